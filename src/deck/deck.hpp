@@ -1,0 +1,159 @@
+// The deck as plain data: what a YAML file says after parameters, units and defaults are resolved. SI units.
+//
+// Nothing here knows YAML, and nothing depends on the dimension at compile time: vectors are arrays of three
+// numbers of which a 2D deck uses the first two.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "particles/material.hpp"
+#include "src/deck/expression.hpp"
+
+namespace quern {
+
+using Numbers3 = std::array<double, 3>;
+
+/// Where a value stands in the user's files, for messages.
+struct Place {
+    std::string file;
+    int line = 0;     ///< from 1; 0 when it came from the command line or from a default
+    std::string key;  ///< dotted path, e.g. "materials.glass.density"
+    std::string text() const;  ///< "file:line: key"
+};
+
+enum class ShapeKind { disk, rectangle, regular_polygon, polygon, sphere, box, mesh };
+enum class Filling { lattice, rings, mesh };  ///< rings: concentric (disk), shells (sphere); mesh: gmsh in process
+
+struct ShapeDeck {
+    std::string name;
+    ShapeKind kind = ShapeKind::disk;
+    Filling filling = Filling::lattice;
+    double radius = 0.0;                          ///< disk, sphere; circumradius of a regular polygon [m]
+    int sides = 0;                                ///< regular polygon
+    Numbers3 size{};                              ///< rectangle, box: edge lengths [m]
+    std::vector<std::array<double, 2>> vertices;  ///< polygon, counter-clockwise [m]
+    std::string file;                             ///< mesh: path of the .msh, relative to the deck's folder
+    double unit = 1.0;                            ///< mesh: metres per unit of length in the file
+    double spacing = 0.0;                         ///< wanted particle spacing [m]; not read for `mesh` files
+    Place place;
+};
+
+struct GrainDeck {
+    std::string shape, material;
+    double scale = 1.0;
+    Numbers3 position{};
+    Numbers3 angle{};  ///< rotation vector [rad]; 2D: component 2 (about z)
+    Numbers3 velocity{};
+    Numbers3 spin{};  ///< [rad/s]; 2D: component 2
+    Place place;
+};
+
+struct FrictionPair {
+    std::string first, second;  ///< materials
+    double value = 0.0;
+};
+
+/// A rigid plane. Matter stays on the side that `normal` points to.
+struct WallDeck {
+    std::string name;  ///< "x-", "y+", ... for a side of the grid, or the user's name
+    Numbers3 point{};
+    Numbers3 normal{};
+    double friction = 0.0;
+    std::vector<Expression> velocity;  ///< of t [m/s]; empty: at rest
+    Place place;
+};
+
+struct GridDeck {
+    Numbers3 origin{};
+    Numbers3 extent{};  ///< edge lengths [m]
+    double spacing = 0.0;
+    std::array<bool, 3> periodic{};
+    Place place;
+};
+
+enum class ContactRule { none, pair, seed };
+enum class ContactCoupling { impulse, flip };
+
+/// Contact on the grid. Each switch turns one ingredient of the pair rule off, to show what it does.
+struct ContactDeck {
+    ContactRule rule = ContactRule::pair;
+    ContactCoupling coupling = ContactCoupling::impulse;
+    double friction = 0.0;  ///< between grains, where no pair of materials says otherwise
+    std::vector<FrictionPair> pairs;
+    double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
+    int max_sweeps = 10;
+    double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
+    bool tile = true;         ///< gap at the closest approach of two fitted profiles; false: from mean positions
+    bool curvature = true;    ///< profiles know the reference curvature
+    bool rotation = true;     ///< impulses act at one point: rotation term of the map
+    bool gap_test = true;     ///< allow approach at gap / dt
+    bool exact_mass = true;   ///< exact inverse mass of the impulse map; false: lumped nodal mass
+    Place place;
+};
+
+/// Body force on grains: an acceleration, or a force per volume, as functions of x, y, z, t.
+struct LoadDeck {
+    std::vector<int> grains;  ///< empty: all
+    std::optional<Expression> region;  ///< of reference x, y, z (as placed at t = 0); non-zero: inside
+    bool per_mass = true;              ///< true: acceleration [m/s^2]; false: force density [N/m^3]
+    std::vector<Expression> value;     ///< one an axis
+    Place place;
+};
+
+/// Prescribed velocity of particles, per axis (no value: free).
+struct ConstraintDeck {
+    std::vector<int> grains;  ///< empty: all
+    std::optional<Expression> region;
+    std::array<std::optional<Expression>, 3> velocity;  ///< of x, y, z, t (current position) [m/s]
+    Place place;
+};
+
+/// Relaxation before the clock starts: own gravity, damping and friction, then velocities are zeroed and
+/// the initial velocities of the deck are given.
+struct PrepareDeck {
+    double duration = 0.0;             ///< [s]
+    std::optional<Numbers3> gravity;   ///< [m/s^2]; none: as in the run
+    double mass_damping = 0.0;         ///< [1/s]
+    std::optional<double> friction;    ///< for all contacts; none: as in the run
+};
+
+struct TimeDeck {
+    double end = 0.0;          ///< [s]
+    double step = 0.0;         ///< [s]; 0: automatic
+    double safety = 0.6;       ///< automatic step = safety * 2 / omega_max
+    Place place;
+};
+
+struct OutputDeck {
+    double interval = 0.0;          ///< frames of results.h5 [s]; 0: 100 frames in the run
+    double history_interval = 0.0;  ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
+    std::vector<int> track;         ///< grains in grains.csv
+    bool track_all = false;
+    bool vtp = false;               ///< also a .vtp series
+    Place place;
+};
+
+struct Deck {
+    std::string title;
+    std::string file;       ///< path as given
+    int dimension = 2;
+    std::vector<Material> materials;
+    std::vector<ShapeDeck> shapes;
+    std::vector<GrainDeck> grains;
+    GridDeck grid;
+    std::vector<WallDeck> walls;
+    ContactDeck contact;
+    Numbers3 gravity{};
+    double mass_damping = 0.0;  ///< force -mass_damping m v [1/s]
+    std::vector<LoadDeck> loads;
+    std::vector<ConstraintDeck> constraints;
+    PrepareDeck prepare;
+    TimeDeck time;
+    OutputDeck output;
+};
+
+}  // namespace quern

@@ -1,0 +1,42 @@
+// Pictures of particles and charts of numbers, drawn off screen by VTK.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace quern {
+
+struct RenderOptions {
+    std::string directory;          ///< of a finished run
+    std::string file;               ///< .png; with frame = "all": pattern, number goes before ".png"
+    std::string field = "speed";    ///< speed, velocity_x.., damage, grain, von_mises, pressure, stress_xx..,
+                                    ///< principal_difference, displacement
+    std::string frame = "last";     ///< last, all, or a number from 0
+    int width = 1200, height = 900;
+};
+
+/// Draws frames of DIR/results.h5. Returns the files written. Throws InputError for an unknown field or
+/// frame (naming the valid ones), OutputError if nothing can be drawn.
+std::vector<std::string> render(const RenderOptions& options);
+
+/// A line of a chart. Points without lines: dashes = 0.
+struct ChartLine {
+    std::string label;
+    std::vector<double> x, y;
+    int color = 0;       ///< index into the colour cycle
+    bool dashed = false;
+    bool markers = false;
+    bool line = true;
+};
+
+struct Chart {
+    std::string title, x_label, y_label;
+    std::vector<ChartLine> lines;
+    bool log_x = false, log_y = false;
+    bool legend = true;
+};
+
+/// Draws charts in a grid of `columns`, each about 560 x 420 pixels, into one PNG.
+void draw_charts(const std::vector<Chart>& charts, int columns, const std::string& file);
+
+}  // namespace quern
