@@ -13,9 +13,15 @@
 
 namespace quern::parallel {
 
-inline int n_threads() { return omp_get_max_threads(); }
-inline void set_threads(int n) { omp_set_num_threads(std::max(1, n)); }
-inline int thread_id() { return omp_get_thread_num(); }
+inline int n_threads() {
+    return omp_get_max_threads();
+}
+inline void set_threads(int n) {
+    omp_set_num_threads(std::max(1, n));
+}
+inline int thread_id() {
+    return omp_get_thread_num();
+}
 
 /// Calls body(i) for i in [0, n). Bodies must be independent. Loops shorter than `serial_below` stay on the
 /// calling thread, where waking the others would cost more than it saves.
