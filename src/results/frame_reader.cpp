@@ -56,22 +56,26 @@ struct FrameFileReader::Impl {
             fail(fmt::format("a dataset /{} that cannot be read ({})", name, hdf5_reason()));
     }
 
+    /// Invalid where the file has no such attribute.
+    Hdf5Handle attribute(const char* name) const {
+        if (H5Aexists(file, name) <= 0) return {};
+        return {H5Aopen(file, name, H5P_DEFAULT), H5Aclose};
+    }
+
     void read_attributes() {
-        if (const Hdf5Handle attribute(
-                H5Aexists(file, "title") > 0 ? H5Aopen(file, "title", H5P_DEFAULT) : -1, H5Aclose);
-            attribute >= 0) {
-            const Hdf5Handle type(H5Aget_type(attribute), H5Tclose);
-            title.resize(H5Tget_size(type));
-            H5Aread(attribute, type, title.data());
-            while (!title.empty() && title.back() == '\0') title.pop_back();
+        if (const Hdf5Handle text = attribute("title"); text >= 0) {
+            const Hdf5Handle type(H5Aget_type(text), H5Tclose);
+            char* characters = nullptr;
+            if (H5Tis_variable_str(type) <= 0 || H5Aread(text, type, &characters) < 0 || !characters)
+                fail("an unreadable attribute title");
+            title = characters;
+            H5free_memory(characters);
         }
-        if (const Hdf5Handle attribute(
-                H5Aexists(file, "domain") > 0 ? H5Aopen(file, "domain", H5P_DEFAULT) : -1, H5Aclose);
-            attribute >= 0) {
-            const Hdf5Handle space(H5Aget_space(attribute), H5Sclose);
+        if (const Hdf5Handle corners = attribute("domain"); corners >= 0) {
+            const Hdf5Handle space(H5Aget_space(corners), H5Sclose);
             domain.resize(2 * static_cast<std::size_t>(dimension));
             const bool fits = H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(domain.size());
-            if (!fits || H5Aread(attribute, H5T_NATIVE_DOUBLE, domain.data()) < 0)
+            if (!fits || H5Aread(corners, H5T_NATIVE_DOUBLE, domain.data()) < 0)
                 fail("an unreadable attribute domain");
         }
     }
