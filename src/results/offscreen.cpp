@@ -1,27 +1,33 @@
 #include "src/results/offscreen.hpp"
 
+#include <fmt/format.h>
+#include <vtkAutoInit.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPNGWriter.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "grid/error.hpp"
 #include "src/results/output_file.hpp"
+
+// Here and not in CMake, so that whoever links this library draws with it.
+VTK_MODULE_INIT(vtkRenderingOpenGL2)
+VTK_MODULE_INIT(vtkRenderingFreeType)
+VTK_MODULE_INIT(vtkRenderingContextOpenGL2)
 
 namespace quern {
 
 namespace {
 
 /// Mean over squares of s x s pixels.
-void average_down(vtkImageData* from, vtkImageData* to, int s) {
+void average_down(const unsigned char* in, vtkImageData* to, int s) {
     int size[3];
     to->GetDimensions(size);
-    const auto* in = static_cast<const unsigned char*>(from->GetScalarPointer());
     auto* out = static_cast<unsigned char*>(to->GetScalarPointer());
     const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(3) * s * size[0];
     for (int y = 0; y < size[1]; ++y)
@@ -61,16 +67,15 @@ void OffscreenWindow::add(vtkRenderer* renderer) {
 
 void OffscreenWindow::write_png(const std::string& file) {
     window_->Render();
-    vtkNew<vtkWindowToImageFilter> grab;
-    grab->SetInput(window_);
-    grab->SetInputBufferTypeToRGB();
-    grab->ReadFrontBufferOff();
-    grab->ShouldRerenderOff();
-    grab->Update();
+    const int wide = width_ * oversampling_, tall = height_ * oversampling_;
+    vtkNew<vtkUnsignedCharArray> pixels;
+    window_->GetPixelData(0, 0, wide - 1, tall - 1, 0, pixels);
+    if (pixels->GetNumberOfValues() != 3 * static_cast<vtkIdType>(wide) * tall)
+        throw OutputError(fmt::format("{}: no picture of {} x {} pixels from OpenGL", file, wide, tall));
     vtkNew<vtkImageData> image;
     image->SetDimensions(width_, height_, 1);
     image->AllocateScalars(VTK_UNSIGNED_CHAR, 3);
-    average_down(grab->GetOutput(), image, oversampling_);
+    average_down(pixels->GetPointer(0), image, oversampling_);
 
     vtkNew<vtkPNGWriter> writer;
     writer->SetInputData(image);
