@@ -12,6 +12,8 @@
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
 
+#include <filesystem>
+
 namespace quern {
 
 namespace {
@@ -33,11 +35,33 @@ class PaintedItem : public vtkContextItem {
 
 vtkStandardNewMacro(PaintedItem);
 
+/// Full path of the first of these files; empty if the machine has none.
+std::string find_font(const char* name) {
+    for (const char* directory : {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu-sans-fonts/",
+                                  "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu/"})
+        if (const std::string path = std::string(directory) + name; std::filesystem::exists(path))
+            return path;
+    return {};
+}
+
 float to_float(double value) {
     return static_cast<float>(value);
 }
 
 }  // namespace
+
+void set_font(vtkTextProperty* text, bool bold) {
+    static const std::string plain_file = find_font("DejaVuSans.ttf"),
+                             bold_file = find_font("DejaVuSans-Bold.ttf");
+    const std::string& file = bold ? bold_file : plain_file;
+    if (file.empty()) {
+        text->SetFontFamilyToArial();
+        text->SetBold(bold);
+    } else {
+        text->SetFontFamily(VTK_FONT_FILE);
+        text->SetFontFile(file.c_str());
+    }
+}
 
 void Painter::add_line(double x0, double y0, double x1, double y1, double width, Rgb color) {
     context_->GetPen()->SetColor(color[0], color[1], color[2]);
@@ -64,9 +88,8 @@ void Painter::add_box(double x, double y, double width, double height, Rgb color
 
 void Painter::set_text_style(const TextStyle& style) {
     vtkTextProperty* text = context_->GetTextProp();
-    text->SetFontFamilyToArial();
+    set_font(text, style.bold);
     text->SetFontSize(style.size * scale_);
-    text->SetBold(style.bold);
     text->SetColor(0.1, 0.1, 0.1);
     text->SetOrientation(style.upright ? 0.0 : 90.0);
     text->SetJustification(static_cast<int>(style.horizontal));
@@ -94,7 +117,7 @@ vtkSmartPointer<vtkRenderer> make_overlay(int oversampling, std::function<void(P
     vtkSmartPointer<vtkRenderer> renderer = vtkSmartPointer<vtkRenderer>::New();
     actor->GetScene()->SetRenderer(renderer);
     renderer->AddActor(actor);
-    renderer->SetLayer(1);
+    renderer->SetLayer(2);
     renderer->InteractiveOff();
     return renderer;
 }

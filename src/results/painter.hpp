@@ -10,6 +10,7 @@
 
 class vtkContext2D;
 class vtkRenderer;
+class vtkTextProperty;
 
 namespace quern {
 
@@ -38,6 +39,9 @@ class Painter {
     vtkContext2D* context_;
     int scale_;
 };
+
+/// DejaVu Sans where the system has it: what Debian's VTK draws for Arial has round brackets for square ones.
+void set_font(vtkTextProperty* text, bool bold);
 
 /// A transparent layer above all others, painted anew at every drawing.
 vtkSmartPointer<vtkRenderer> make_overlay(int oversampling, std::function<void(Painter&)> paint);

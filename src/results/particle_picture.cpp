@@ -33,6 +33,10 @@ namespace {
 using Point = std::array<double, 3>;
 
 constexpr int oversampling = 2;
+// Discs of the right area leave gaps between neighbours. Where they are too small to be seen as discs, the
+// gaps would show as moire: there the discs are widened until those of a square lattice close up.
+constexpr double smallest_disc = 4.0;  // [pixel]
+constexpr double gapless = 1.35;       // sqrt(pi / 2) and some for strain
 constexpr Rgb ink = {40, 40, 40}, wall = {90, 90, 90};
 
 /// Replaces the Gaussian of the mapper: a disc, and a ball lit from the upper left of the viewer.
@@ -121,6 +125,9 @@ struct ParticlePicture::Impl {
         add_particles();
         if (!options.domain.empty()) add_domain();
         aim_camera();
+        background->SetBackground(1.0, 1.0, 1.0);
+        renderer->SetLayer(1);
+        window.add(background);
         window.add(renderer);
         window.add(make_overlay(oversampling, [this](Painter& painter) {
             if (options.dimension == 2)
@@ -146,7 +153,6 @@ struct ParticlePicture::Impl {
         actor->ForceOpaqueOn();
         actor->GetProperty()->LightingOff();
         renderer->AddActor(actor);
-        renderer->SetBackground(1.0, 1.0, 1.0);
     }
 
     void add_domain() {
@@ -196,13 +202,16 @@ struct ParticlePicture::Impl {
         color->SetName("color");
         color->SetNumberOfComponents(3);
         const auto d = static_cast<std::size_t>(frame.dimension);
+        const double pixels_per_metre = layout.width / (layout.high[0] - layout.low[0]);
         for (std::size_t i = 0; i < frame.n(); ++i) {
             const double* x = &frame.position[i * d];
             const double z = d == 3 ? x[2] : 0.0;
             if (!std::isfinite(x[0] + x[1] + z)) continue;
             const vtkIdType id = points->InsertNextPoint(x[0], x[1], z);
             vertices->InsertNextCell(1, &id);
-            radius->InsertNextValue(static_cast<float>(particle_radius(frame.volume[i], frame.dimension)));
+            const double r = particle_radius(frame.volume[i], frame.dimension);
+            const bool small = frame.dimension == 2 && r * pixels_per_metre < smallest_disc;
+            radius->InsertNextValue(static_cast<float>(small ? gapless * r : r));
             const Rgb rgb = colors.color(values[i]);
             color->InsertNextTypedTuple(rgb.data());
         }
@@ -227,19 +236,19 @@ struct ParticlePicture::Impl {
         for (const Tick& tick : ticks(0, l.width, 90)) {
             const double at = l.x + (tick.value / unit.factor - l.low[0]) / (l.high[0] - l.low[0]) * l.width;
             painter.add_line(at, l.y, at, l.y - 6, 1.0, ink);
-            painter.add_text(at, l.y - 10, tick.label, {.size = 15, .vertical = Align::high});
+            painter.add_text(at, l.y - 10, tick.label, {.size = 14, .vertical = Align::high});
         }
         for (const Tick& tick : ticks(1, l.height, 60)) {
             const double at = l.y + (tick.value / unit.factor - l.low[1]) / (l.high[1] - l.low[1]) * l.height;
             painter.add_line(l.x, at, l.x - 6, at, 1.0, ink);
-            const TextStyle style{.size = 15, .horizontal = Align::high};
+            const TextStyle style{.size = 14, .horizontal = Align::high};
             painter.add_text(l.x - 10, at, tick.label, style);
             widest = std::max(widest, painter.text_width(tick.label, style));
         }
         painter.add_text(l.x + 0.5 * l.width, l.y - 34, fmt::format("x [{}]", unit.name),
-                         {.size = 16, .vertical = Align::high});
+                         {.size = 15, .vertical = Align::high});
         painter.add_text(l.x - 22 - widest, l.y + 0.5 * l.height, fmt::format("y [{}]", unit.name),
-                         {.size = 16, .vertical = Align::low, .upright = false});
+                         {.size = 15, .vertical = Align::low, .upright = false});
     }
 
     void paint_scale_bar(Painter& painter) const {
@@ -250,7 +259,7 @@ struct ParticlePicture::Impl {
         painter.add_line(left, y, right, y, 2.0, ink);
         for (const double x : {left, right}) painter.add_line(x, y - 6, x, y + 6, 2.0, ink);
         painter.add_text(0.5 * (left + right), y - 9, fmt::format("{:g} {}", length * unit.factor, unit.name),
-                         {.size = 15, .vertical = Align::high});
+                         {.size = 14, .vertical = Align::high});
     }
 
     void paint_triad(Painter& painter) const {
@@ -259,7 +268,7 @@ struct ParticlePicture::Impl {
         for (std::size_t c = 0; c < 3; ++c) {
             const double dx = length * axes.right[c], dy = length * axes.up[c];
             painter.add_line(x, y, x + dx, y + dy, 2.0, axis_color[c]);
-            painter.add_text(x + 1.3 * dx, y + 1.3 * dy, std::string(1, "xyz"[c]), {.size = 15});
+            painter.add_text(x + 1.3 * dx, y + 1.3 * dy, std::string(1, "xyz"[c]), {.size = 14});
         }
     }
 
@@ -281,20 +290,20 @@ struct ParticlePicture::Impl {
             const double at =
                 y + (tick.value / unit.factor - colors.low()) / (colors.high() - colors.low()) * height;
             painter.add_line(x + width, at, x + width + 6, at, 1.0, ink);
-            const TextStyle style{.size = 15, .horizontal = Align::low};
+            const TextStyle style{.size = 14, .horizontal = Align::low};
             painter.add_text(x + width + 10, at, tick.label, style);
             widest = std::max(widest, painter.text_width(tick.label, style));
         }
         const std::string name =
             unit.name.empty() ? options.field.label : fmt::format("{} [{}]", options.field.label, unit.name);
         painter.add_text(x + width + 18 + widest, y + 0.5 * height, name,
-                         {.size = 16, .vertical = Align::high, .upright = false});
+                         {.size = 15, .vertical = Align::high, .upright = false});
     }
 
     void paint_title(Painter& painter) const {
         const double middle = layout.x + 0.5 * layout.width, top = layout.y + layout.height;
-        painter.add_text(middle, top + 10, caption, {.size = 15, .vertical = Align::low});
-        TextStyle style{.size = 20, .vertical = Align::low, .bold = true};
+        painter.add_text(middle, top + 10, caption, {.size = 14, .vertical = Align::low});
+        TextStyle style{.size = 18, .vertical = Align::low, .bold = true};
         const double room = 2.0 * std::min(middle, options.width - middle) - 10.0;
         while (style.size > 10 && painter.text_width(options.title, style) > room) --style.size;
         painter.add_text(middle, top + 34, options.title, style);
@@ -305,7 +314,8 @@ struct ParticlePicture::Impl {
     Layout layout;
     ColorMap colors;
     OffscreenWindow window;
-    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkRenderer> background,
+        renderer;  // white everywhere; the plot, which clips what it does not show
     vtkNew<vtkPointGaussianMapper> mapper;
     vtkNew<vtkPolyData> cloud;
     std::string caption;
