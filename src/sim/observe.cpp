@@ -29,8 +29,12 @@ Particles<Dim> particles_now(const Scene<Dim>& scene, const StepContext<Dim>& no
     return particles;
 }
 
-double about_z(const Spin<2>& s) { return s[0]; }
-double about_z(const Spin<3>& s) { return s[2]; }
+double about_z(const Spin<2>& s) {
+    return s[0];
+}
+double about_z(const Spin<3>& s) {
+    return s[2];
+}
 
 }  // namespace
 
@@ -85,8 +89,8 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
     e.contact_loss = -past.normal - part * here.normal;
     e.fracture = past.fracture;
     e.transfer_loss = past.transfer + part * here.transfer;
-    e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint + part * here.constraint +
-                      past.wall + part * here.wall;
+    e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint +
+                      part * here.constraint + past.wall + part * here.wall;
     const double stored = e.kinetic + e.elastic + e.gravity;
     const double lost = e.damping + e.friction + e.contact_loss + e.fracture + e.transfer_loss;
     const double total = stored + lost - e.external_work;
@@ -116,7 +120,8 @@ GrainTracker<Dim>::GrainTracker(const Scene<Dim>& scene, const Deck& deck) {
     if (deck.output.track_all)
         grains_ = scene.grain_of_id;
     else
-        for (const int id : deck.output.track) grains_.push_back(scene.grain_of_id[static_cast<std::size_t>(id)]);
+        for (const int id : deck.output.track)
+            grains_.push_back(scene.grain_of_id[static_cast<std::size_t>(id)]);
     for (const int g : grains_) {
         angle_.push_back(deck.grains[scene.grains[g].id].angle[2]);
         rotation_.push_back(best_fit_rotation<Dim>(scene.grains[g], scene.particles.x, scene.particles.mass));
@@ -125,7 +130,8 @@ GrainTracker<Dim>::GrainTracker(const Scene<Dim>& scene, const Deck& deck) {
 }
 
 template <int Dim>
-std::vector<GrainRow> GrainTracker<Dim>::rows(const Scene<Dim>& scene, StepContext<Dim>& now, double elapsed) {
+std::vector<GrainRow> GrainTracker<Dim>::rows(const Scene<Dim>& scene, StepContext<Dim>& now,
+                                              double elapsed) {
     std::vector<GrainRow> rows;
     for (std::size_t k = 0; k < grains_.size(); ++k) {
         Grain<Dim> grain = scene.grains[grains_[k]];
@@ -172,24 +178,28 @@ Frame make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now) {
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;
     for (const MaterialGroup<Dim>& group : scene.groups)
-        std::visit([&](const auto& model) {
-            parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
-                const int g = group.first_grain + static_cast<int>(i);
-                const Grain<Dim>& grain = scene.grains[g];
-                const std::size_t first = static_cast<std::size_t>(grain.first);
-                const std::size_t count = static_cast<std::size_t>(grain.count);
-                model.compute_damage(scene.view(g), {frame.damage.data() + first, count});
-                model.compute_stress(scene.view(g), {frame.stress.data() + n_stress * first, n_stress * count});
-                for (std::size_t p = first; p < first + count; ++p) {
-                    const Vec<Dim> v = velocity_now(scene, now, static_cast<int>(p));
-                    for (std::size_t a = 0; a < Dim; ++a) {
-                        frame.position[p * Dim + a] = scene.particles.x[p][static_cast<int>(a)];
-                        frame.velocity[p * Dim + a] = v[static_cast<int>(a)];
-                    }
-                    frame.grain[p] = grain.id;
-                }
-            });
-        }, group.model);
+        std::visit(
+            [&](const auto& model) {
+                parallel::for_each(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
+                        const int g = group.first_grain + static_cast<int>(i);
+                        const Grain<Dim>& grain = scene.grains[g];
+                        const std::size_t first = static_cast<std::size_t>(grain.first);
+                        const std::size_t count = static_cast<std::size_t>(grain.count);
+                        model.compute_damage(scene.view(g), {frame.damage.data() + first, count});
+                        model.compute_stress(scene.view(g),
+                                             {frame.stress.data() + n_stress * first, n_stress * count});
+                        for (std::size_t p = first; p < first + count; ++p) {
+                            const Vec<Dim> v = velocity_now(scene, now, static_cast<int>(p));
+                            for (std::size_t a = 0; a < Dim; ++a) {
+                                frame.position[p * Dim + a] = scene.particles.x[p][static_cast<int>(a)];
+                                frame.velocity[p * Dim + a] = v[static_cast<int>(a)];
+                            }
+                            frame.grain[p] = grain.id;
+                        }
+                    });
+            },
+            group.model);
     return frame;
 }
 

@@ -23,7 +23,9 @@ namespace quern {
 namespace {
 
 volatile std::sig_atomic_t stop_requested = 0;
-void request_stop(int) { stop_requested = 1; }
+void request_stop(int) {
+    stop_requested = 1;
+}
 
 /// SIGINT and SIGTERM ask the run to end after the step at hand.
 class StopSignals {
@@ -46,7 +48,9 @@ class StopSignals {
 };
 
 using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
 
 double peak_memory_bytes() {
     rusage usage{};
@@ -130,16 +134,19 @@ class Run {
         dt = deck_.time.end / static_cast<double>(n_steps_);
         now_.dt = summary_.time_step = dt;
         if (dt > summary_.stable_step)
-            warn(fmt::format("time.step {:.4g} s is above the stable step {:.4g} s", dt, summary_.stable_step));
+            warn(fmt::format("time.step {:.4g} s is above the stable step {:.4g} s", dt,
+                             summary_.stable_step));
     }
 
     void host_line() {
         char host[256] = "unknown";
         gethostname(host, sizeof host - 1);
-        writer_.log(fmt::format("Quern {} on {}, {} threads: {}", QUERN_VERSION, host, summary_.threads, deck_.file));
-        writer_.log(fmt::format("{} grains, {} particles, {} bonds; time step {:.6g} s (stable {:.6g} s), {} steps",
-                                summary_.n_grains, summary_.n_particles, summary_.n_bonds, summary_.time_step,
-                                summary_.stable_step, n_steps_));
+        writer_.log(
+            fmt::format("Quern {} on {}, {} threads: {}", QUERN_VERSION, host, summary_.threads, deck_.file));
+        writer_.log(
+            fmt::format("{} grains, {} particles, {} bonds; time step {:.6g} s (stable {:.6g} s), {} steps",
+                        summary_.n_grains, summary_.n_particles, summary_.n_bonds, summary_.time_step,
+                        summary_.stable_step, n_steps_));
     }
 
     void warn(const std::string& text) {
@@ -165,7 +172,8 @@ class Run {
                 if (deck_.prepare.friction) scene_->walls[w].friction = *deck_.prepare.friction;
             }
             if (deck_.prepare.friction)
-                scene_->friction = FrictionTable(static_cast<int>(deck_.materials.size()), *deck_.prepare.friction);
+                scene_->friction =
+                    FrictionTable(static_cast<int>(deck_.materials.size()), *deck_.prepare.friction);
             const auto steps = static_cast<std::int64_t>(std::ceil(deck_.prepare.duration / now_.dt));
             Progress progress(options_.progress_terminal, deck_.prepare.duration,
                               [&](const std::string& line) { writer_.log("prepare: " + line); });
@@ -200,7 +208,8 @@ class Run {
         Schedule rows(deck_.output.history_interval > 0.0 ? deck_.output.history_interval : end / 1000.0);
         GrainTracker<Dim> tracker(*scene_, deck_);
         Observer<Dim> observer;
-        Progress progress(options_.progress_terminal, end, [&](const std::string& line) { writer_.log(line); });
+        Progress progress(options_.progress_terminal, end,
+                          [&](const std::string& line) { writer_.log(line); });
         start_ = Clock::now();
         double last_row = 0.0;
         for (;;) {
@@ -245,31 +254,38 @@ class Run {
                     grain = g.id;
                     particle = p - g.first;
                 }
-        return fmt::format("grain {}, particle {}, step {} (t = {:.6g} s): energy has grown by {:.3g} J of {:.3g} J; "
-                           "the run is unstable, try a smaller time.safety or time.step",
-                           grain, particle, now_.step, now_.time, energy.residual, energy.throughput);
+        return fmt::format(
+            "grain {}, particle {}, step {} (t = {:.6g} s): energy has grown by {:.3g} J of {:.3g} J; "
+            "the run is unstable, try a smaller time.safety or time.step",
+            grain, particle, now_.step, now_.time, energy.residual, energy.throughput);
     }
 
     void close() {
         summary_.wall_seconds = seconds_since(start_);
         summary_.steps = now_.step;
         summary_.simulated_time = now_.time;
-        const double particle_steps = static_cast<double>(summary_.n_particles * std::max<std::int64_t>(1, now_.step));
+        const double particle_steps =
+            static_cast<double>(summary_.n_particles * std::max<std::int64_t>(1, now_.step));
         summary_.ns_per_particle_step = 1e9 * (summary_.wall_seconds - now_.stages.output) / particle_steps;
         summary_.peak_memory_bytes = peak_memory_bytes();
         summary_.state_hash = state_hash(*scene_);
         const StageTimes& s = now_.stages;
-        summary_.stages = {{"internal_forces", s.internal_forces}, {"loads", s.loads},   {"kick", s.kick},
-                           {"contact", s.contact},                 {"drift", s.drift},   {"output", s.output}};
+        summary_.stages = {{"internal_forces", s.internal_forces},
+                           {"loads", s.loads},
+                           {"kick", s.kick},
+                           {"contact", s.contact},
+                           {"drift", s.drift},
+                           {"output", s.output}};
         if (now_.unconverged > 0)
             summary_.warnings.emplace_back(
-                fmt::format("contact sweeps ended at contact.max_sweeps before contact.tolerance (first in step {})",
-                            now_.first_unconverged),
+                fmt::format(
+                    "contact sweeps ended at contact.max_sweeps before contact.tolerance (first in step {})",
+                    now_.first_unconverged),
                 now_.unconverged);
         for (const auto& [text, count] : warnings_) summary_.warnings.emplace_back(text, count);
-        writer_.log(fmt::format("{}: {} steps in {:.2f} s, {:.1f} ns per particle-step, state {}", summary_.outcome,
-                                summary_.steps, summary_.wall_seconds, summary_.ns_per_particle_step,
-                                summary_.state_hash));
+        writer_.log(fmt::format("{}: {} steps in {:.2f} s, {:.1f} ns per particle-step, state {}",
+                                summary_.outcome, summary_.steps, summary_.wall_seconds,
+                                summary_.ns_per_particle_step, summary_.state_hash));
         writer_.finish(summary_);
     }
 

@@ -22,8 +22,12 @@ Vec<Dim> vec(const Numbers3& v) {
     return r;
 }
 
-Spin<2> spin(const Numbers3& v, Spin<2>) { return Spin<2>(v[2]); }
-Spin<3> spin(const Numbers3& v, Spin<3>) { return {v[0], v[1], v[2]}; }
+Spin<2> spin(const Numbers3& v, Spin<2>) {
+    return Spin<2>(v[2]);
+}
+Spin<3> spin(const Numbers3& v, Spin<3>) {
+    return {v[0], v[1], v[2]};
+}
 
 template <int Dim>
 CartesianGrid<Dim> make_grid(const GridDeck& deck) {
@@ -33,7 +37,8 @@ CartesianGrid<Dim> make_grid(const GridDeck& deck) {
         n[a] = std::max(1, static_cast<int>(std::ceil(deck.extent[a] / deck.spacing - 1e-9)));
         periodic[a] = deck.periodic[a];
         if (periodic[a] && n[a] < 4)
-            throw InputError(deck.place.text(), fmt::format("{} cells on a periodic axis", n[a]), "4 or more");
+            throw InputError(deck.place.text(), fmt::format("{} cells on a periodic axis", n[a]),
+                             "4 or more");
     }
     return CartesianGrid<Dim>(vec<Dim>(deck.origin), deck.spacing, n, periodic);
 }
@@ -55,7 +60,8 @@ GridContactOptions contact_options(const ContactDeck& deck) {
 
 template <class Named>
 int index_of(const std::vector<Named>& list, const std::string& name) {
-    const auto it = std::find_if(list.begin(), list.end(), [&](const Named& item) { return item.name == name; });
+    const auto it =
+        std::find_if(list.begin(), list.end(), [&](const Named& item) { return item.name == name; });
     return static_cast<int>(it - list.begin());
 }
 
@@ -65,7 +71,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
     const int n_grains = static_cast<int>(deck.grains.size());
     std::vector<std::tuple<int, int, int>> order;
     for (int id = 0; id < n_grains; ++id)
-        order.emplace_back(index_of(deck.shapes, deck.grains[id].shape), index_of(deck.materials, deck.grains[id].material), id);
+        order.emplace_back(index_of(deck.shapes, deck.grains[id].shape),
+                           index_of(deck.materials, deck.grains[id].material), id);
     std::sort(order.begin(), order.end());
     scene.grain_of_id.resize(static_cast<std::size_t>(n_grains));
     std::pair<int, int> previous{-1, -1};
@@ -97,7 +104,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         for (int i = 0; i < shape.n_nodes(); ++i) {
             const Vec<Dim> x = vec<Dim>(from.position) + from.scale * (R * shape.X[i]);
             if (!scene.grid.contains(x))
-                throw InputError(from.place.text(), fmt::format("grain {} with a particle outside the grid", id),
+                throw InputError(from.place.text(),
+                                 fmt::format("grain {} with a particle outside the grid", id),
                                  "every grain inside the grid", "move the grain or enlarge grid.extent");
             for (std::size_t w = 0; w < scene.walls.size(); ++w)
                 if (scene.walls[w].distance(x) < -0.5 * shape.dx * from.scale)
@@ -111,7 +119,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
             grain.volume += scene.particles.volume.back();
             grain.mass += scene.particles.mass.back();
         }
-        const std::size_t n_bonds = static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
+        const std::size_t n_bonds =
+            static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
         scene.n_bonds += static_cast<std::int64_t>(n_bonds);
         scene.alive_begin.push_back(scene.alive.size());
         if (group.breakable) scene.alive.resize(scene.alive.size() + n_bonds, 1);
@@ -135,15 +144,16 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
     std::array<std::int64_t, Dim> stride;
     stride[0] = 1;
     for (int a = 1; a < Dim; ++a)
-        stride[a] = stride[a - 1] * static_cast<std::int64_t>(2.0 * scene.grid.extent().maxCoeff() / cell + 8.0);
+        stride[a] =
+            stride[a - 1] * static_cast<std::int64_t>(2.0 * scene.grid.extent().maxCoeff() / cell + 8.0);
     std::vector<Point> points;
     for (std::size_t g = 0; g < scene.grains.size(); ++g)
         for (const SurfacePoint<Dim>& s : scene.grains[g].shape->surface) {
             const int p = scene.grains[g].first + s.node;
             std::int64_t key = 0;
             for (int a = 0; a < Dim; ++a)
-                key += stride[a] *
-                       static_cast<std::int64_t>(std::floor((scene.particles.x[p][a] - scene.grid.origin()[a]) / cell));
+                key += stride[a] * static_cast<std::int64_t>(
+                                       std::floor((scene.particles.x[p][a] - scene.grid.origin()[a]) / cell));
             points.push_back({key, static_cast<int>(g), p});
         }
     std::stable_sort(points.begin(), points.end());
@@ -151,10 +161,12 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
     const auto compare = [&](const Point& a, const Point& b) {
         if (a.grain <= b.grain) return;
         const double limit = 0.3 * std::min(spacing(a.grain), spacing(b.grain));
-        if ((scene.particles.x[a.particle] - scene.particles.x[b.particle]).squaredNorm() >= limit * limit) return;
+        if ((scene.particles.x[a.particle] - scene.particles.x[b.particle]).squaredNorm() >= limit * limit)
+            return;
         const int first = std::min(scene.grains[a.grain].id, scene.grains[b.grain].id);
         const int second = std::max(scene.grains[a.grain].id, scene.grains[b.grain].id);
-        throw InputError(deck.grains[second].place.text(), fmt::format("grain {} overlapping grain {}", second, first),
+        throw InputError(deck.grains[second].place.text(),
+                         fmt::format("grain {} overlapping grain {}", second, first),
                          "grains apart or just touching", "move one of them");
     };
     for (const Point& point : points) {
@@ -169,21 +181,24 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
 }
 
 template <int Dim>
-std::vector<int> select_particles(const Scene<Dim>& scene, const std::vector<int>& ids, const std::optional<Expression>& region) {
+std::vector<int> select_particles(const Scene<Dim>& scene, const std::vector<int>& ids,
+                                  const std::optional<Expression>& region) {
     std::vector<int> particles;
     for (std::size_t id = 0; id < scene.grain_of_id.size(); ++id) {
         if (!ids.empty() && std::find(ids.begin(), ids.end(), static_cast<int>(id)) == ids.end()) continue;
         const Grain<Dim>& grain = scene.grains[scene.grain_of_id[id]];
         for (int p = grain.first; p < grain.first + grain.count; ++p) {
             const Vec<Dim>& x = scene.particles.x[p];
-            if (!region || (*region)(x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0, 0.0) != 0.0) particles.push_back(p);
+            if (!region || (*region)(x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0, 0.0) != 0.0)
+                particles.push_back(p);
         }
     }
     return particles;
 }
 
 void require_particles(const Place& place, const std::vector<int>& particles) {
-    if (particles.empty()) throw InputError(place.text(), "a region without particles", "at least one particle in it");
+    if (particles.empty())
+        throw InputError(place.text(), "a region without particles", "at least one particle in it");
 }
 
 template <int Dim>
@@ -239,18 +254,22 @@ std::span<std::uint8_t> Scene<Dim>::alive_of(int grain) {
 
 template <int Dim>
 const MaterialGroup<Dim>& Scene<Dim>::group_of(int grain) const {
-    return *std::find_if(groups.begin(), groups.end(), [&](const auto& group) { return grain < group.last_grain; });
+    return *std::find_if(groups.begin(), groups.end(),
+                         [&](const auto& group) { return grain < group.last_grain; });
 }
 
 template <int Dim>
 double Scene<Dim>::elastic_energy() const {
     double energy = 0.0;
     for (const MaterialGroup<Dim>& group : groups)
-        energy += std::visit([&](const auto& model) {
-            return parallel::sum(static_cast<std::size_t>(group.last_grain - group.first_grain), 0.0, [&](std::size_t i) {
-                return model.elastic_energy(view(group.first_grain + static_cast<int>(i)));
-            });
-        }, group.model);
+        energy += std::visit(
+            [&](const auto& model) {
+                return parallel::sum(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), 0.0, [&](std::size_t i) {
+                        return model.elastic_energy(view(group.first_grain + static_cast<int>(i)));
+                    });
+            },
+            group.model);
     return energy;
 }
 
@@ -283,11 +302,13 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     arrays.internal.resize(n);
     arrays.v_before.resize(n);
     if (!deck.loads.empty()) arrays.load.resize(n);
-    if (std::any_of(scene->groups.begin(), scene->groups.end(), [](const auto& group) { return group.damped; }))
+    if (std::any_of(scene->groups.begin(), scene->groups.end(),
+                    [](const auto& group) { return group.damped; }))
         arrays.damping.assign(n, Vec<Dim>::Zero());
     scene->friction = FrictionTable(static_cast<int>(deck.materials.size()), deck.contact.friction);
     for (const FrictionPair& pair : deck.contact.pairs)
-        scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second), pair.value);
+        scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second),
+                            pair.value);
     if (deck.contact.rule != ContactRule::none) {
         scene->contact.emplace(scene->grid, contact_options(deck.contact));
         if (scene->contact->moves_with_grid()) {
@@ -306,11 +327,13 @@ void set_initial_velocities(const Deck& deck, Scene<Dim>& scene) {
     for (const Grain<Dim>& grain : scene.grains) {
         const GrainDeck& from = deck.grains[grain.id];
         Vec<Dim> centre = Vec<Dim>::Zero();
-        for (int p = grain.first; p < grain.first + grain.count; ++p) centre += scene.particles.mass[p] * scene.particles.x[p];
+        for (int p = grain.first; p < grain.first + grain.count; ++p)
+            centre += scene.particles.mass[p] * scene.particles.x[p];
         centre /= grain.mass;
         const Spin<Dim> omega = spin(from.spin, Spin<Dim>{});
         for (int p = grain.first; p < grain.first + grain.count; ++p)
-            scene.particles.v[p] = vec<Dim>(from.velocity) + cross(omega, Vec<Dim>(scene.particles.x[p] - centre));
+            scene.particles.v[p] =
+                vec<Dim>(from.velocity) + cross(omega, Vec<Dim>(scene.particles.x[p] - centre));
     }
     if (!scene.arrays.drift.empty()) scene.arrays.drift = scene.particles.v;
 }

@@ -21,8 +21,8 @@ struct MaterialGroup {
     PeridynamicModel<Dim> model;
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
     bool damped = false, breakable = false;
-    double bond_damping = 0.0;            ///< [s]
-    double density = 0.0;                 ///< [kg/m^3]
+    double bond_damping = 0.0;  ///< [s]
+    double density = 0.0;       ///< [kg/m^3]
 };
 
 /// Body force on some particles.
@@ -56,8 +56,8 @@ struct Scene {
     CartesianGrid<Dim> grid;
     std::vector<std::unique_ptr<Shape<Dim>>> shapes;
     std::vector<MaterialGroup<Dim>> groups;
-    std::vector<Grain<Dim>> grains;        ///< sorted by group; Grain::id is the number in the deck
-    std::vector<int> grain_of_id;          ///< [n_grains] position of each deck number in `grains`
+    std::vector<Grain<Dim>> grains;  ///< sorted by group; Grain::id is the number in the deck
+    std::vector<int> grain_of_id;    ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
     std::vector<Vec<Dim>> x_start;         ///< positions as placed [m]
     std::vector<std::uint8_t> alive;       ///< bonds of breakable grains, 0 = broken

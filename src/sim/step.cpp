@@ -39,21 +39,24 @@ void break_bonds(Scene<Dim>& scene, StepContext<Dim>& now) {
                 return *this;
             }
         };
-        const auto broken = std::visit([&](const auto& model) {
-            return parallel::sum(static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
-                                 [&](std::size_t i) {
-                const int g = group.first_grain + static_cast<int>(i);
-                const GrainView<Dim> view = scene.view(g);
-                thread_local std::vector<std::uint8_t> intact;
-                intact.assign(view.alive.begin(), view.alive.end());
-                Broken grain;
-                grain.count = model.break_bonds(view, scene.alive_of(g));
-                if (grain.count == 0) return grain;
-                grain.released = -model.elastic_energy(view);
-                grain.released += model.elastic_energy({view.scale, view.x, view.v, intact});
-                return grain;
-            });
-        }, group.model);
+        const auto broken = std::visit(
+            [&](const auto& model) {
+                return parallel::sum(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
+                    [&](std::size_t i) {
+                        const int g = group.first_grain + static_cast<int>(i);
+                        const GrainView<Dim> view = scene.view(g);
+                        thread_local std::vector<std::uint8_t> intact;
+                        intact.assign(view.alive.begin(), view.alive.end());
+                        Broken grain;
+                        grain.count = model.break_bonds(view, scene.alive_of(g));
+                        if (grain.count == 0) return grain;
+                        grain.released = -model.elastic_energy(view);
+                        grain.released += model.elastic_energy({view.scale, view.x, view.v, intact});
+                        return grain;
+                    });
+            },
+            group.model);
         now.newly_broken += broken.count;
         now.ledger.past.fracture += broken.released;
     }
@@ -63,21 +66,24 @@ template <int Dim>
 void add_internal_forces(Scene<Dim>& scene) {
     StepArrays<Dim>& a = scene.arrays;
     for (const MaterialGroup<Dim>& group : scene.groups) {  // one dispatch a group
-        std::visit([&](const auto& model) {
-            parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
-                const int g = group.first_grain + static_cast<int>(i);
-                const Grain<Dim>& grain = scene.grains[g];
-                const std::size_t first = static_cast<std::size_t>(grain.first);
-                const std::size_t count = static_cast<std::size_t>(grain.count);
-                std::span<Vec<Dim>> f(a.internal.data() + first, count);
-                std::fill(f.begin(), f.end(), Vec<Dim>::Zero());
-                model.add_internal_forces(scene.view(g), f);
-                if (!group.damped) return;
-                std::span<Vec<Dim>> f_damping(a.damping.data() + first, count);
-                std::fill(f_damping.begin(), f_damping.end(), Vec<Dim>::Zero());
-                model.add_damping_forces(scene.view(g), f_damping);
-            });
-        }, group.model);
+        std::visit(
+            [&](const auto& model) {
+                parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain),
+                                   [&](std::size_t i) {
+                                       const int g = group.first_grain + static_cast<int>(i);
+                                       const Grain<Dim>& grain = scene.grains[g];
+                                       const std::size_t first = static_cast<std::size_t>(grain.first);
+                                       const std::size_t count = static_cast<std::size_t>(grain.count);
+                                       std::span<Vec<Dim>> f(a.internal.data() + first, count);
+                                       std::fill(f.begin(), f.end(), Vec<Dim>::Zero());
+                                       model.add_internal_forces(scene.view(g), f);
+                                       if (!group.damped) return;
+                                       std::span<Vec<Dim>> f_damping(a.damping.data() + first, count);
+                                       std::fill(f_damping.begin(), f_damping.end(), Vec<Dim>::Zero());
+                                       model.add_damping_forces(scene.view(g), f_damping);
+                                   });
+            },
+            group.model);
     }
 }
 
@@ -93,7 +99,8 @@ void add_loads(Scene<Dim>& scene, double time) {
     for (const Load<Dim>& load : scene.loads)
         for (const int p : load.particles) {
             const double amount = load.per_mass ? scene.particles.mass[p] : scene.particles.volume[p];
-            for (int k = 0; k < Dim; ++k) a.load[p][k] += amount * value<Dim>(load.value[k], scene.particles.x[p], time);
+            for (int k = 0; k < Dim; ++k)
+                a.load[p][k] += amount * value<Dim>(load.value[k], scene.particles.x[p], time);
         }
 }
 
@@ -151,7 +158,8 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
         for (const int p : constraint.particles) {
             Vec<Dim> v = scene.particles.v[p];
             for (int k = 0; k < Dim; ++k)
-                if (constraint.velocity[k]) v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
+                if (constraint.velocity[k])
+                    v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
             const Vec<Dim> dp = scene.particles.mass[p] * (v - scene.particles.v[p]);
             const Vec<Dim> v_work = after_contact ? scene.particles.v[p] : v;
             now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
@@ -165,7 +173,8 @@ template <int Dim>
 void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     if (!scene.contact) return;
     const Particles<Dim>& particles = scene.particles;
-    const ContactScene<Dim> view{scene.grains, particles.x, particles.mass, particles.volume, scene.walls, &scene.friction};
+    const ContactScene<Dim> view{scene.grains,     particles.x, particles.mass,
+                                 particles.volume, scene.walls, &scene.friction};
     const ContactReport<Dim>& report = scene.contact->add_impulses(
         view, {now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift});
     typename Ledger<Dim>::Entry& entry = now.ledger.now;
@@ -177,7 +186,8 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
         entry.moment -= report.wall_moment[w];
         now.wall_impulse[w] += report.wall_impulse[w];
     }
-    for (std::size_t g = 0; g < report.grain_impulse.size(); ++g) now.grain_impulse[g] += report.grain_impulse[g];
+    for (std::size_t g = 0; g < report.grain_impulse.size(); ++g)
+        now.grain_impulse[g] += report.grain_impulse[g];
     now.contact_nodes += report.n_nodes;
     now.contacts += report.n_contacts;
     now.sweeps += report.sweeps;
@@ -221,7 +231,8 @@ void close_ledger(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     });
     entry.damping = now.ledger.damping_half + sums.damping;
     entry.load = now.ledger.load_half + sums.load;
-    if (with_grid) entry.transfer = sums.transfer + entry.normal + entry.friction + entry.wall + entry.constraint;
+    if (with_grid)
+        entry.transfer = sums.transfer + entry.normal + entry.friction + entry.wall + entry.constraint;
 }
 
 }  // namespace
@@ -300,10 +311,11 @@ void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
         while (p >= scene.grains[g].first + scene.grains[g].count) ++g;
         const bool number = particles.x[p].allFinite();
         throw SimulationError(fmt::format(
-            "grain {}, particle {}, step {} (t = {:.6g} s): {}", scene.grains[g].id, p - scene.grains[g].first, now.step,
-            now.time,
-            number ? "has left the grid; a wall or a larger grid is missing, or the run is unstable"
-                   : "its position is no number; the run is unstable, try a smaller time.safety or time.step"));
+            "grain {}, particle {}, step {} (t = {:.6g} s): {}", scene.grains[g].id,
+            p - scene.grains[g].first, now.step, now.time,
+            number
+                ? "has left the grid; a wall or a larger grid is missing, or the run is unstable"
+                : "its position is no number; the run is unstable, try a smaller time.safety or time.step"));
     }
 }
 

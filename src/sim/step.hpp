@@ -24,30 +24,32 @@ struct StageTimes {
 template <int Dim>
 struct Ledger {
     struct Entry {
-        double damping = 0, load = 0, constraint = 0, normal = 0, friction = 0, wall = 0, fracture = 0, transfer = 0;
-        Vec<Dim> impulse = Vec<Dim>::Zero();        ///< from outside [N s]
-        Spin<Dim> moment = Spin<Dim>::Zero();       ///< about the origin [N m s]
+        double damping = 0, load = 0, constraint = 0, normal = 0, friction = 0, wall = 0, fracture = 0,
+               transfer = 0;
+        Vec<Dim> impulse = Vec<Dim>::Zero();   ///< from outside [N s]
+        Spin<Dim> moment = Spin<Dim>::Zero();  ///< about the origin [N m s]
         Entry& operator+=(const Entry& other);
     };
-    Entry past;           ///< up to n-1/2
-    Entry now;            ///< the step at hand
+    Entry past;                              ///< up to n-1/2
+    Entry now;                               ///< the step at hand
     double damping_half = 0, load_half = 0;  ///< half of this step's work, taken with v(n-1/2)
-    double kinetic = 0;   ///< at time n [J]
+    double kinetic = 0;                      ///< at time n [J]
 };
 
 template <int Dim>
 struct StepContext {
     double dt = 0.0;
-    double time = 0.0;            ///< of the positions [s]
+    double time = 0.0;  ///< of the positions [s]
     std::int64_t step = 0;
-    bool first = true;            ///< the next kick is half a kick
+    bool first = true;  ///< the next kick is half a kick
     Ledger<Dim> ledger;
     StageTimes stages;
     std::vector<Vec<Dim>> grain_impulse;  ///< [n_grains] contact impulse since it was last zeroed [N s]
     std::vector<Vec<Dim>> wall_impulse;   ///< [n_walls]
     std::int64_t unconverged = 0, first_unconverged = -1;
     std::int64_t newly_broken = 0;
-    /// Share of this step's works that has happened at the time of the positions: the first kick starts there.
+    /// Share of this step's works that has happened at the time of the positions: the first kick starts
+    /// there.
     double part_done() const { return first ? 0.0 : 0.5; }
 
     std::int64_t contact_nodes = 0, contacts = 0, sweeps = 0;  ///< summed over the steps
