@@ -12,7 +12,10 @@
 #include <vtkStdString.h>
 #include <vtkTextProperty.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <numbers>
 
 namespace quern {
 
@@ -63,12 +66,70 @@ void set_font(vtkTextProperty* text, bool bold) {
     }
 }
 
-void Painter::add_line(double x0, double y0, double x1, double y1, double width, Rgb color) {
+void Painter::set_pen(double width, Rgb color) {
     context_->GetPen()->SetColor(color[0], color[1], color[2]);
     context_->GetPen()->SetLineType(vtkPen::SOLID_LINE);
     context_->GetPen()->SetWidth(to_float(width * scale_));
+}
+
+void Painter::add_line(double x0, double y0, double x1, double y1, double width, Rgb color) {
+    set_pen(width, color);
     context_->DrawLine(to_float(x0 * scale_), to_float(y0 * scale_), to_float(x1 * scale_),
                        to_float(y1 * scale_));
+}
+
+void Painter::add_solid_curve(const std::vector<double>& points) {
+    std::vector<float> scaled(points.size());
+    std::transform(points.begin(), points.end(), scaled.begin(),
+                   [&](double p) { return to_float(p * scale_); });
+    if (points.size() >= 4) context_->DrawPoly(scaled.data(), static_cast<int>(points.size() / 2));
+}
+
+void Painter::add_curve(const std::vector<double>& points, double width, Rgb color, bool dashed) {
+    set_pen(width, color);
+    if (!dashed) return add_solid_curve(points);
+    // Cut by arc length: the core profile of OpenGL knows no dashed lines.
+    constexpr double period = 11.0, dash = 7.0;  // [pixel]
+    double done = 0.0;
+    std::vector<double> piece;
+    for (std::size_t i = 0; i + 3 < points.size(); i += 2) {
+        const double dx = points[i + 2] - points[i], dy = points[i + 3] - points[i + 1],
+                     length = std::hypot(dx, dy);
+        for (double at = 0.0; at < length;) {
+            const double phase = std::fmod(done, period);
+            const bool on = phase < dash;
+            const double next = std::min(length, at + std::max(1e-6, (on ? dash : period) - phase));
+            if (on) {
+                if (piece.empty()) piece = {points[i] + dx * at / length, points[i + 1] + dy * at / length};
+                piece.insert(piece.end(),
+                             {points[i] + dx * next / length, points[i + 1] + dy * next / length});
+            } else {
+                add_solid_curve(piece);
+                piece.clear();
+            }
+            done += next - at;
+            at = next;
+        }
+    }
+    add_solid_curve(piece);
+}
+
+void Painter::add_marker(double x, double y, double size, Marker shape, Rgb color) {
+    context_->GetPen()->SetLineType(vtkPen::NO_PEN);
+    context_->GetBrush()->SetColor(color[0], color[1], color[2]);
+    const int n = shape == Marker::circle ? 24 : shape == Marker::triangle ? 3 : 4;
+    const double first = shape == Marker::square ? 0.25 * std::numbers::pi : 0.5 * std::numbers::pi;
+    const double radius = size * scale_ *
+                          (shape == Marker::circle     ? 0.5
+                           : shape == Marker::triangle ? 0.68
+                                                       : 0.62);
+    std::vector<float> xs, ys;
+    for (int i = 0; i < n; ++i) {
+        const double angle = first + 2.0 * std::numbers::pi * i / n;
+        xs.push_back(to_float(x * scale_ + radius * std::cos(angle)));
+        ys.push_back(to_float(y * scale_ + radius * std::sin(angle)));
+    }
+    context_->DrawPolygon(xs.data(), ys.data(), n);
 }
 
 void Painter::add_frame(double x, double y, double width, double height, double line_width, Rgb color) {

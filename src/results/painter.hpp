@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "src/results/colors.hpp"
 
@@ -15,6 +16,8 @@ class vtkTextProperty;
 namespace quern {
 
 enum class Align { low, middle, high };  ///< left, centre, right, or bottom, centre, top
+
+enum class Marker { circle, square, triangle, diamond };
 
 struct TextStyle {
     int size = 15;  ///< height of the letters' line [pixel]
@@ -30,10 +33,15 @@ class Painter {
     void add_line(double x0, double y0, double x1, double y1, double width, Rgb color);
     void add_frame(double x, double y, double width, double height, double line_width, Rgb color);
     void add_box(double x, double y, double width, double height, Rgb color);
+    /// Through points given as x0, y0, x1, y1, ...
+    void add_curve(const std::vector<double>& points, double width, Rgb color, bool dashed = false);
+    void add_marker(double x, double y, double size, Marker shape, Rgb color);
     void add_text(double x, double y, const std::string& text, const TextStyle& style);
     double text_width(const std::string& text, const TextStyle& style);
 
   private:
+    void set_pen(double width, Rgb color);
+    void add_solid_curve(const std::vector<double>& points);
     void set_text_style(const TextStyle& style);
 
     vtkContext2D* context_;
