@@ -146,27 +146,40 @@ void check_families(const Bonds<Dim>& bonds, double ratio, const std::string& wh
     }
 }
 
+/// Distance of every node from the true surface, exact up to one horizon and at least that beyond [m].
 template <int Dim>
-void measure_bulk(Bonds<Dim>& bonds, Influence kind, const std::vector<double>& family_volume) {
+std::vector<double> make_depths(const Bonds<Dim>& bonds, const std::vector<SurfacePoint<Dim>>& surface) {
+    std::vector<double> depth(bonds.X.size(), bonds.horizon);
+    for (const SurfacePoint<Dim>& point : surface) {
+        depth[point.node] = std::min(depth[point.node], point.delta);
+        for (const auto [j, b] : bonds.family_of(point.node))
+            depth[j] = std::min(depth[j], point.delta + bonds.length[b]);
+    }
+    return depth;
+}
+
+template <int Dim>
+void measure_bulk(Bonds<Dim>& bonds, Influence kind, const std::vector<double>& family_volume,
+                  const std::vector<double>& depth) {
     double n_bulk = 0.0, moment = 0.0, volume = 0.0, mean_volume = 0.0;
     for (int i = 0; i < bonds.n_nodes(); ++i) {
-        Vec<Dim> imbalance = Vec<Dim>::Zero();
-        double arm = 0.0, m = 0.0;
-        for (const auto [j, b] : bonds.family_of(i)) {
-            imbalance += bonds.volume[j] * (bonds.X[j] - bonds.X[i]);
-            arm += bonds.volume[j] * bonds.length[b];
-            m += bonds.weight[b] * bonds.length[b] * bonds.length[b] * bonds.volume[j];
-        }
         mean_volume += bonds.volume[i] / bonds.n_nodes();
-        if (imbalance.norm() > 0.03 * arm) continue;
-        if (family_volume[i] + bonds.volume[i] < 0.6 * ball_volume<Dim>(bonds.horizon)) continue;
+        if (depth[i] < bonds.horizon) continue;
         n_bulk += 1.0;
-        moment += m;
         volume += family_volume[i];
+        moment += bonds.moment[i];
     }
     const bool found = n_bulk > 0.0;
     bonds.bulk_moment = found ? moment / n_bulk : weighted_ball_volume<Dim>(kind, bonds.horizon);
     bonds.bulk_family_volume = found ? volume / n_bulk : ball_volume<Dim>(bonds.horizon) - mean_volume;
+}
+
+template <int Dim>
+void sum_moments(Bonds<Dim>& bonds) {
+    bonds.moment.assign(bonds.X.size(), 0.0);
+    for (int i = 0; i < bonds.n_nodes(); ++i)
+        for (const auto [j, b] : bonds.family_of(i))
+            bonds.moment[i] += bonds.weight[b] * bonds.length[b] * bonds.length[b] * bonds.volume[j];
 }
 
 }  // namespace
@@ -191,18 +204,16 @@ Bonds<Dim> make_bonds(const Shape<Dim>& shape, const Material& material) {
     std::vector<double> family_volume(n, 0.0);
     for (int i = 0; i < n; ++i)
         for (const auto [j, b] : bonds.family_of(i)) family_volume[i] += bonds.volume[j];
-    measure_bulk(bonds, material.influence, family_volume);
+    sum_moments(bonds);
+    measure_bulk(bonds, material.influence, family_volume, make_depths(bonds, shape.surface));
 
-    if (material.surface_correction == SurfaceCorrection::volume)
+    if (material.surface_correction == SurfaceCorrection::volume) {
         for (int i = 0; i < n; ++i)
             for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
                 bonds.weight[b] *=
                     2.0 * bonds.bulk_family_volume / (family_volume[i] + family_volume[bonds.partner[b]]);
-
-    bonds.moment.assign(n, 0.0);
-    for (int i = 0; i < n; ++i)
-        for (const auto [j, b] : bonds.family_of(i))
-            bonds.moment[i] += bonds.weight[b] * bonds.length[b] * bonds.length[b] * bonds.volume[j];
+        sum_moments(bonds);
+    }
     return bonds;
 }
 

@@ -26,8 +26,8 @@ struct Neighbor {
 ///
 /// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method" (after Bobaru et al. 2017).
 /// Differs: V0 is the mean over the bulk families of the shape itself, so that a lattice has lambda = 1
-/// inside. Bulk families: those that are balanced, |sum V_j xi_vec| <= 0.03 sum V_j xi, and hold at least 0.6
-/// of the ball; a shape too thin to have one falls back on the integrals over the ball.
+/// inside. Bulk: at least one horizon below the true surface, by Shape::surface. A shape too thin to have
+/// such a node falls back on the integrals over the ball.
 template <int Dim>
 struct Bonds {
     double horizon = 0.0;             ///< [m]
