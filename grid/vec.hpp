@@ -4,6 +4,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
