@@ -48,7 +48,7 @@ T sum(std::size_t n, const T& zero, Term&& term) {
         T total = zero;
         for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
         partial[b] = total;
-    });
+    }, 16);
     T total = zero;
     for (const T& part : partial) total += part;
     return total;

@@ -84,9 +84,9 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
     e.kinetic = now.ledger.kinetic + part * (contact + here.constraint - here.transfer);
     e.elastic = scene.elastic_energy();
     e.gravity = m.potential;
-    e.damping = -past.damping - (now.first ? 0.0 : now.ledger.damping_half);
-    e.friction = -past.friction - part * here.friction;
-    e.contact_loss = -past.normal - part * here.normal;
+    e.damping = 0.0 - past.damping - (now.first ? 0.0 : now.ledger.damping_half);
+    e.friction = 0.0 - past.friction - part * here.friction;
+    e.contact_loss = 0.0 - past.normal - part * here.normal;
     e.fracture = past.fracture;
     e.transfer_loss = past.transfer + part * here.transfer;
     e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint +

@@ -84,7 +84,7 @@ class Run {
     Run(const Deck& deck, const RunOptions& options)
         : deck_(deck),
           options_(options),
-          writer_(WriterOptions{options.directory, Dim, deck.output.vtp, domain(deck)}),
+          writer_(writer_options(deck, options)),
           scene_(make_scene<Dim>(deck)) {
         summary_.version = QUERN_VERSION;
         summary_.title = deck.title;
@@ -120,11 +120,15 @@ class Run {
     }
 
   private:
-    static std::vector<double> domain(const Deck& deck) {
-        std::vector<double> box;
-        for (int a = 0; a < Dim; ++a) box.push_back(deck.grid.origin[a]);
-        for (int a = 0; a < Dim; ++a) box.push_back(deck.grid.origin[a] + deck.grid.extent[a]);
-        return box;
+    static WriterOptions writer_options(const Deck& deck, const RunOptions& options) {
+        WriterOptions out;
+        out.directory = options.directory;
+        out.dimension = Dim;
+        out.vtp = deck.output.vtp;
+        out.title = deck.title;
+        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck.grid.origin[a]);
+        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck.grid.origin[a] + deck.grid.extent[a]);
+        return out;
     }
 
     void choose_time_step() {
