@@ -381,11 +381,13 @@ Table<ConstraintDeck> constraint_table() {
          velocity,
          [velocity](T& constraint, const Cursor& at, const Context& now) {
              check_size(at, static_cast<std::size_t>(now.dimension), velocity, now.dimension);
-             bool any = false;
+             Key component = velocity;
+            component.form = Form::formula;
+            bool any = false;
              for (std::size_t i = 0; i < at.node().items.size(); ++i) {
                  const Cursor entry = at.entry(i);
-                 if (says(entry, now, "free")) continue;
-                 constraint.velocity[i] = read_formula(entry, now, velocity);
+                 if (entry.node().kind == Node::Kind::null || says(entry, now, "free")) continue;
+                 constraint.velocity[i] = read_formula(entry, now, component);
                  any = true;
              }
              if (!any) throw InputError(at.where(), "free on every axis", "a velocity on one axis at least");

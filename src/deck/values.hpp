@@ -85,8 +85,6 @@ Numbers3 read_turn(const Cursor& at, const Context& now, const Key& key);
 Expression read_formula(const Cursor& at, const Context& now, const Key& key);
 std::vector<Expression> read_formulas(const Cursor& at, const Context& now, const Key& key);
 bool says(const Cursor& at, const Context& now, const std::string& word);
-/// The value of a quantity text such as a cell of a table.
-double check_number(double value, const Key& key, const std::string& where, const std::string& got);
 
 void check_list(const Cursor& at);
 void check_size(const Cursor& at, std::size_t size, const Key& key, int dimension);
