@@ -25,6 +25,9 @@ struct Range {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 inline constexpr Range any_number{};
 inline constexpr Range positive{0.0, no_limit, true, false, false};
+constexpr Range at_least(double low) {
+    return {low, no_limit, false, false, false};
+}
 inline constexpr Range not_negative{0.0, no_limit, false, false, false};
 
 /// How a value is written.

@@ -182,7 +182,7 @@ const BadInput bad_inputs[] = {
     {"wall on a periodic axis",
      "periodic: []",
      "periodic: [y]",
-     {"deck.yaml:25: walls.0.side", "a wall on a periodic axis"}},
+     {"deck.yaml:25: walls.0", "a wall across y, which is periodic"}},
     {"side in 3D", "side: y-", "side: z-", {"deck.yaml:25: walls.0.side", "'z-'", "2D"}},
     {"unknown side", "side: y-", "side: y", {"deck.yaml:25: walls.0.side", "'y'", "x-, x+, y-, y+"}},
     {"wall inside out",
@@ -396,6 +396,61 @@ TEST_CASE("Deck: each bad input is named by line, key, what was got and what is 
             CHECK(message.find(part) != std::string::npos);
         }
         CHECK(message.find('\n') == std::string::npos);
+    }
+}
+
+TEST_CASE("Deck: bad input in 3D is named in the same way") {
+    const BadInput inputs[] = {
+        {"plane", "model: bond_based", "plane: stress", {"materials.glass.plane", "does not apply in 3D"}},
+        {"disk",
+         "type: sphere",
+         "type: disk",
+         {"shapes.ball.type", "disk", "one of sphere, box, mesh", "the deck is 3D"}},
+        {"short vector",
+         "gravity: [${9.8*sin(theta)}, 0, ",
+         "gravity: [0, ",
+         {"gravity", "a list of 2", "a list of 3 numbers"}},
+        {"turn",
+         "angle: [0, 0, 90 deg]",
+         "angle: 90 deg",
+         {"grains.0.angle", "'90 deg'", "a list of 3 numbers in rad"}},
+        {"poisson ratio",
+         "poisson_ratio: 0.25",
+         "poisson_ratio: 0.3",
+         {"materials.glass.model", "nu = 0.3", "nu = 1/4 in 3D"}},
+        {"file without z",
+         "position: [0, 0.5, 0]",
+         "file: here.csv",
+         {"here.csv:1", "no column z", "x, y and z"}},
+        {"formula",
+         "[x*y*z*t, 0, 0]",
+         "[x*y*z*t, 0, ~]",
+         {"loads.1.acceleration.2", "nothing", "a formula of x, y, z, t in m/s^2"}},
+        {"rings in a box",
+         "type: box",
+         "type: box, filling: rings",
+         {"shapes.brick.filling", "rings fill disks and spheres"}},
+        {"wall inside out",
+         "normal: [0, 3, 4]",
+         "normal: [0, -3, 0]",
+         {"grains.0.position", "behind wall slope"}},
+        {"word in a formula",
+         "-${speed}*${ramp}",
+         "-${speed}*${word}",
+         {"walls.0.velocity.1", "unknown name 'seed'"}},
+    };
+    const TempFolder folder;
+    folder.write("here.csv", "x,y\n0,0\n");
+    for (const BadInput& bad : inputs) {
+        CAPTURE(bad.what);
+        std::string message = "no error";
+        try {
+            read_deck(folder.write("deck.yaml", replaced(full_deck, bad.from, bad.to)));
+        } catch (const InputError& error) {
+            message = error.what();
+        }
+        CAPTURE(message);
+        for (const std::string& part : bad.parts) CHECK(message.find(part) != std::string::npos);
     }
 }
 

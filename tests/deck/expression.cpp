@@ -10,7 +10,7 @@ using namespace quern;
 
 TEST_CASE("Expression: functions and operators mean what they say") {
     const double x = 0.7, y = -1.3, z = 2.1, t = 0.4;
-    const std::pair<const char*, double> formulas[] = {
+    const std::pair<std::string, double> formulas[] = {
         {"sin(x) + cos(y)", std::sin(x) + std::cos(y)},
         {"exp(-t)*pow(z, 3)", std::exp(-t) * z * z * z},
         {"min(x, y, z) - max(x, t)", y - x},
@@ -21,7 +21,9 @@ TEST_CASE("Expression: functions and operators mean what they say") {
         {"2*pi*x^2", 2 * 3.14159265358979323846 * x * x},
         {"(x == x) + (x != x) + (x <= t) + (x >= t)", 2.0},
     };
-    for (const auto& [text, value] : formulas) {
+    for (const std::pair<std::string, double>& pair : formulas) {
+        const std::string& text = pair.first;
+        const double value = pair.second;
         CAPTURE(text);
         const Expression formula(text, "here");
         CHECK_FALSE(formula.is_constant());

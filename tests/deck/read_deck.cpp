@@ -16,57 +16,6 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Everything a deck can hold, in 3D.
-const std::string full_deck = R"(title: 'All of it: "${word}" at ${theta}'
-dimension: 3
-params:
-  theta: 60 deg
-  word: seed
-  half: ${mu/2}      # used before it is given
-  mu: 0.3
-  speed: ${100*half} mm/us
-  ramp: min(t/1e-3, 1)
-time: {end: 2 min, step: 0.5 us, safety: 0.7}
-gravity: [${9.8*sin(theta)}, 0, ${-9.8*cos(theta)}]
-materials:
-  glass: {density: 2.44 g/cm^3, young_modulus: 72 GPa, poisson_ratio: 0.25, model: bond_based,
-          horizon_ratio: 3, influence: gaussian, calibration: none, surface_correction: volume,
-          bond_damping: 2 us, critical_stretch: 0.1 %}
-  "odd name, really": {density: 1 t/m^3, bulk_modulus: 1 GPa, young_modulus: 2 GPa}
-shapes:
-  ball: {type: sphere, filling: rings, radius: 1 cm, spacing: 1 mm}
-  brick: {type: box, size: [1 cm, 2 cm, 3 cm], spacing: 2 mm}
-grid: {origin: [-1, -1, -1], extent: [2, 2.05, 2], spacing: 0.1, periodic: [x, z]}
-walls:
-  - {side: y+, friction: ${mu}, velocity: [0, '-${speed}*${ramp}', 0]}
-  - {name: slope, point: [0, -0.9, 0], normal: [0, 3, 4]}
-contact:
-  rule: ${word}
-  coupling: flip
-  friction: ${half}
-  pairs:
-    - {between: [glass, "odd name, really"], friction: 0.5}
-  interior_weight: 10 %
-  max_sweeps: ${2*5}
-  tolerance: 1e-4
-  tile: false
-  curvature: false
-  rotation: false
-  gap_test: false
-  exact_mass: false
-damping: {mass: 3 Hz}
-loads:
-  - {grains: [1], region: 'if(x > 0, 1, 0)', force_density: [0, 1 kN/m^3, sin(2*pi*t)]}
-  - {acceleration: [x*y*z*t, 0, 0]}
-constraints:
-  - {grains: all, region: z < -0.5, velocity: [free, 0.1 mm/us, ~]}
-prepare: {duration: 0.1, gravity: [0, 0, -1], mass_damping: 5, friction: 0}
-output: {interval: 1 s, history_interval: 10 ms, track: [0, 1], vtp: true}
-grains:
-  - {shape: ball, material: glass, position: [0, 1 cm, 20 mm], angle: [0, 0, 90 deg], spin: [60 rpm, 0, 0]}
-  - {shape: brick, material: "odd name, really", position: [0, 0.5, 0], velocity: [1 km/h, 0, 0], scale: 1.5}
-)";
-
 }  // namespace
 
 TEST_CASE("read_deck: every key arrives in SI units") {

@@ -11,7 +11,7 @@ using namespace quern;
 
 TEST_CASE("Units: quantities become SI numbers without rounding noise") {
     const double pi = std::numbers::pi;
-    const std::pair<const char*, double> exact[] = {
+    const std::pair<std::string, double> exact[] = {
         {"7.5 GPa", 7.5e9},    {"100 um", 1e-4},        {"31 um", 31e-6},   {"60 deg", 60 * pi / 180},
         {"0.1 mm/us", 100.0},  {"2.44 g/cm^3", 2440.0}, {"9.8 m/s^2", 9.8}, {"30 rpm", pi},
         {"90 deg/s", pi / 2},  {"3 min", 180.0},        {"2 h", 7200.0},    {"5 %", 0.05},
@@ -20,7 +20,9 @@ TEST_CASE("Units: quantities become SI numbers without rounding noise") {
         {"2 kJ", 2000.0},      {"2 t", 2000.0},         {"7 nm", 7e-9},     {"7 ns", 7e-9},
         {"1 km^2", 1e6},       {"3 MN / m^2", 3e6},     {"12", 12.0},       {"2 mg", 2e-6},
         {"1 W", 1.0},          {"3 cm", 0.03},          {"4 mN", 0.004},    {"1 kPa", 1000.0}};
-    for (const auto& [text, value] : exact) {
+    for (const std::pair<std::string, double>& pair : exact) {
+        const std::string& text = pair.first;
+        const double value = pair.second;
         CAPTURE(text);
         const std::optional<Quantity> quantity = parse_quantity(text, "here");
         REQUIRE(quantity);
