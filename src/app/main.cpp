@@ -80,7 +80,7 @@ int parse_and_run(int argc, char** argv) {
     CLI::App app(
         "Quern simulates deformable grains: peridynamic particles that touch through a background grid.",
         "quern");
-    app.require_subcommand(1);
+    app.require_subcommand(0, 1);
     app.set_version_flag("--version", "quern " QUERN_VERSION);
     app.footer("Exit codes: 0 done, 2 bad input, 3 simulation failed, 4 output failed, 130 interrupted.");
 
@@ -127,6 +127,10 @@ int parse_and_run(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
         return report(std::string(error.what()) + " (quern --help)", InputError::exit_code);
+    }
+    if (app.get_subcommands().empty()) {
+        return report("a command is required: run, check, schema or render (quern --help)",
+                      InputError::exit_code);
     }
     if (run_command.parsed()) return run(arguments);
     if (render_command.parsed()) return draw(arguments);

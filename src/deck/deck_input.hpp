@@ -62,6 +62,11 @@ inline const std::vector<std::string> wall_sides = {"x-", "x+", "y-", "y+", "z-"
 /// The whole deck: the one table that reads, writes and documents it.
 const Table<DeckInput>& deck_table();
 
+// Parts of it that stand in a file of their own.
+Table<MaterialInput> material_table();
+Table<ShapeDeck> shape_table();
+Table<GrainInput> grain_table();
+
 // Checks of single sections, run as soon as each is read.
 void finish_material(MaterialInput& material, const Cursor& at, const Context& now);
 void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now);

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 
@@ -44,6 +46,30 @@ bool assigns(const std::string& text) {
     return false;
 }
 
+/// muparser takes an unknown function for a variable, and complains about its bracket.
+void check_functions(const std::string& text, const std::string& where, const std::string& expected) {
+    const std::vector<std::string> known = formula_words();
+    for (std::size_t open = text.find('('); open != std::string::npos; open = text.find('(', open + 1)) {
+        std::size_t begin = open;
+        while (begin > 0 &&
+               (std::isalnum(static_cast<unsigned char>(text[begin - 1])) || text[begin - 1] == '_')) {
+            --begin;
+        }
+        const std::string name = text.substr(begin, open - begin);
+        if (name.empty() || std::isdigit(static_cast<unsigned char>(name[0]))) continue;
+        if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+        throw InputError(where, fmt::format("the unknown function '{}' in '{}'", name, text), expected,
+                         did_you_mean(name, known));
+    }
+}
+
+void check_syntax(const std::string& text, const std::string& where, const std::string& expected) {
+    if (assigns(text)) {
+        throw InputError(where, "'" + text + "'", expected, "an assignment has no value; == compares");
+    }
+    check_functions(text, where, expected);
+}
+
 double evaluate_once(mu::Parser& parser) {
     int n_results = 0;
     const double* results = parser.Eval(n_results);
@@ -68,8 +94,7 @@ struct Expression::Formula {
 
 Expression::Expression(const std::string& text, const std::string& where) {
     const std::string expected = "a formula of x, y, z, t";
-    if (assigns(text))
-        throw InputError(where, "'" + text + "'", expected, "an assignment has no value; == compares");
+    check_syntax(text, where, expected);
     try {
         mu::Parser parser = make_parser(text);
         const mu::varmap_type used = parser.GetUsedVar();
@@ -114,8 +139,7 @@ std::string Expression::text() const {
 double evaluate(const std::string& text, const std::function<double(const std::string&)>& value_of,
                 const std::string& where) {
     const std::string expected = "a formula of numbers and parameters";
-    if (assigns(text))
-        throw InputError(where, "'" + text + "'", expected, "an assignment has no value; == compares");
+    check_syntax(text, where, expected);
     try {
         mu::Parser parser = make_parser(text);
         const mu::varmap_type used = parser.GetUsedVar();

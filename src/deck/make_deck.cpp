@@ -15,18 +15,20 @@ std::vector<std::string> names_of(const std::vector<Named>& things) {
     return names;
 }
 
-void check_name(const std::string& name, const std::vector<std::string>& names, const std::string& where,
-                const char* kind) {
-    if (std::find(names.begin(), names.end(), name) != names.end()) return;
-    throw InputError(where, fmt::format("the unknown {} '{}'", kind, name),
-                     names.empty() ? fmt::format("a {}", kind) : "one of " + join(names),
-                     did_you_mean(name, names));
-}
-
 std::string place_text(Place place, const char* key) {
     if (!place.key.empty()) place.key += ".";
     place.key += key;
     return place.text();
+}
+
+/// `kind`: what the name is of. `where` makes the place, asked only if there is something to report.
+template <class Where>
+void check_name(const std::string& name, const std::vector<std::string>& names, const char* kind,
+                const Where& where) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    throw InputError(where(), fmt::format("the unknown {} '{}'", kind, name),
+                     names.empty() ? fmt::format("a {}", kind) : "one of " + join(names),
+                     did_you_mean(name, names));
 }
 
 /// Distance of a point from a wall, positive on the side of the grains.
@@ -40,10 +42,6 @@ WallDeck place_wall(WallInput wall, const GridDeck& grid, int dimension) {
     if (!wall.side) return wall;
     const std::size_t axis = *wall.side / 2;
     const bool upper = *wall.side % 2 == 1;
-    if (grid.periodic[axis]) {
-        throw InputError(place_text(wall.place, "side"), "a wall on a periodic axis",
-                         "a side of another axis, or an axis that is not periodic");
-    }
     for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
         wall.point[i] = grid.origin[i] + 0.5 * grid.extent[i];
     }
@@ -54,6 +52,11 @@ WallDeck place_wall(WallInput wall, const GridDeck& grid, int dimension) {
 }
 
 void check_wall(const WallDeck& wall, const GridDeck& grid, int dimension) {
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+        if (!grid.periodic[i] || std::abs(wall.normal[i]) < 1e-12) continue;
+        throw InputError(wall.place.text(), fmt::format("a wall across {}, which is periodic", "xyz"[i]),
+                         "a wall along each periodic axis");
+    }
     double farthest = -no_limit;
     for (int corner = 0; corner < 1 << dimension; ++corner) {
         Numbers3 point = grid.origin;
@@ -66,19 +69,18 @@ void check_wall(const WallDeck& wall, const GridDeck& grid, int dimension) {
 }
 
 void check_grain(const GrainDeck& grain, const Deck& deck, std::size_t number) {
-    check_name(grain.shape, names_of(deck.shapes), place_text(grain.place, "shape"), "shape");
-    check_name(grain.material, names_of(deck.materials), place_text(grain.place, "material"), "material");
-    const std::string who =
-        fmt::format("grain {} at {}", number, vector_text(grain.position, deck.dimension));
+    const auto who = [&] {
+        return fmt::format("grain {} at {}", number, vector_text(grain.position, deck.dimension));
+    };
     for (std::size_t i = 0; i < static_cast<std::size_t>(deck.dimension); ++i) {
         const double low = deck.grid.origin[i], high = low + deck.grid.extent[i];
         if (grain.position[i] >= low && grain.position[i] <= high) continue;
-        throw InputError(place_text(grain.place, "position"), who,
+        throw InputError(place_text(grain.place, "position"), who(),
                          fmt::format("a centre inside the grid box, {} in [{}, {}]", "xyz"[i], low, high));
     }
     for (const WallDeck& wall : deck.walls) {
         if (distance(wall, grain.position) > 0.0) continue;
-        throw InputError(place_text(grain.place, "position"), who + ", behind wall " + wall.name,
+        throw InputError(place_text(grain.place, "position"), who() + ", behind wall " + wall.name,
                          "a centre on the side that the wall's normal points to");
     }
 }
@@ -87,14 +89,14 @@ void check_pairs(const Deck& deck, const Cursor& at) {
     const std::vector<std::string> materials = names_of(deck.materials);
     for (std::size_t i = 0; i < deck.contact.pairs.size(); ++i) {
         const FrictionPair& pair = deck.contact.pairs[i];
-        const std::string where = at.where(fmt::format("contact.pairs.{}.between", i));
-        check_name(pair.first, materials, where, "material");
-        check_name(pair.second, materials, where, "material");
+        const auto where = [&] { return at.where(fmt::format("contact.pairs.{}.between", i)); };
+        check_name(pair.first, materials, "material", where);
+        check_name(pair.second, materials, "material", where);
         for (std::size_t j = 0; j < i; ++j) {
             const FrictionPair& other = deck.contact.pairs[j];
             const bool same = (pair.first == other.first && pair.second == other.second) ||
                               (pair.first == other.second && pair.second == other.first);
-            if (same) throw InputError(where, "a pair of materials a second time", "each pair once");
+            if (same) throw InputError(where(), "a pair of materials a second time", "each pair once");
         }
     }
 }
@@ -142,7 +144,14 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     if (deck.grains.empty()) throw InputError(at.where("grains"), "an empty list", "one grain at least");
     check_walls(deck);
     check_pairs(deck, at);
-    for (std::size_t i = 0; i < deck.grains.size(); ++i) check_grain(deck.grains[i], deck, i);
+    const std::vector<std::string> shapes = names_of(deck.shapes), materials = names_of(deck.materials);
+    for (std::size_t i = 0; i < deck.grains.size(); ++i) {
+        const GrainDeck& grain = deck.grains[i];
+        check_name(grain.shape, shapes, "shape", [&] { return place_text(grain.place, "shape"); });
+        check_name(grain.material, materials, "material",
+                   [&] { return place_text(grain.place, "material"); });
+        check_grain(grain, deck, i);
+    }
     const std::size_t n = deck.grains.size();
     for (const LoadDeck& load : deck.loads) check_ids(load.grains, n, place_text(load.place, "grains"));
     for (const ConstraintDeck& held : deck.constraints)

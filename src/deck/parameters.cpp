@@ -133,8 +133,8 @@ Scalar Parameters::resolve(const Node& node, const std::string& where, Wanted wa
             return {number_text(number), number};
         }
         if (value.number) {
-            throw InputError(where, fmt::format("'{}' after a parameter that has a unit", rest), "one unit",
-                             "parameters are in SI units");
+            throw InputError(where, fmt::format("'{}'", text), "no unit behind it",
+                             inside(text, *first) + " has a unit already");
         }
     }
     std::string result;

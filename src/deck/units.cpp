@@ -166,6 +166,10 @@ std::optional<NumberAndRest> split_number(std::string_view text) {
 }
 
 std::string text_of(const Dimension& dimension) {
+    for (const NamedUnit& known : units) {
+        const bool si = known.unit.numerator == 1 && known.unit.denominator == 1;
+        if (si && known.unit.dimension == dimension) return std::string(known.name);
+    }
     const std::pair<const char*, int> bases[] = {
         {"kg", dimension.mass}, {"m", dimension.length}, {"rad", dimension.angle}, {"s", dimension.time}};
     std::string above, below;

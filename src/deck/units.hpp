@@ -44,7 +44,7 @@ std::optional<NumberAndRest> split_number(std::string_view text);
 
 std::string_view trim(std::string_view text);
 
-/// The dimension in base units: "kg/(m*s^2)"; "1" without any.
+/// The SI unit of a dimension: "Pa", or in base units "kg/(m^2*s)"; "1" for pure numbers.
 std::string text_of(const Dimension& dimension);
 
 }  // namespace quern

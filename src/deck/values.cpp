@@ -68,7 +68,7 @@ std::string Key::expectation(int deck_dimension) const {
         case Form::points:
             return "a list of at least 3 points [x, y]" + numbers;
         case Form::formula:
-            return "a formula of " + join(words);
+            return fmt::format("a formula of {}{}", join(words), in_unit(unit));
         case Form::formulas:
             return fmt::format("a list of {} formulas of {}{}", deck_dimension, join(words), in_unit(unit));
         case Form::axes:
@@ -95,14 +95,6 @@ std::string Key::obstacle(int deck_dimension, const std::string& type) const {
     return {};
 }
 
-double check_number(double value, const Key& key, const std::string& where, const std::string& got) {
-    if (key.range.contains(value)) return value;
-    const std::string value_text = number_text(value);
-    const bool same = got.find(value_text) != std::string::npos;
-    throw InputError(where, same ? got : fmt::format("{} = {}", got, value_text),
-                     "a number" + limits(key.range, key.unit));
-}
-
 double read_number(const Cursor& at, const Context& now, const Key& key) {
     const Scalar scalar = read_scalar(at, now, key, Parameters::Wanted::number);
     const bool infinite = key.range.infinite && (scalar.text == ".inf" || scalar.text == "inf");
@@ -120,7 +112,12 @@ double read_number(const Cursor& at, const Context& now, const Key& key) {
             fmt::format("'{}' (a quantity in {})", scalar.text, text_of(*scalar.number->dimension)),
             key.unit.empty() ? "a number without unit" : "a quantity in " + key.unit);
     }
-    return check_number(scalar.number->value, key, at.where(), "'" + at.node().text + "'");
+    const double value = scalar.number->value;
+    if (key.range.contains(value)) return value;
+    const std::string& text = at.node().text;
+    const bool plain = text == number_text(value);
+    throw InputError(at.where(), plain ? fmt::format("'{}'", text) : fmt::format("'{}' = {}", text, value),
+                     key.expectation(now.dimension));
 }
 
 int read_integer(const Cursor& at, const Context& now, const Key& key) {
@@ -197,8 +194,10 @@ Expression read_formula(const Cursor& at, const Context& now, const Key& key) {
 std::vector<Expression> read_formulas(const Cursor& at, const Context& now, const Key& key) {
     check_size(at, static_cast<std::size_t>(now.dimension), key, now.dimension);
     std::vector<Expression> formulas;
+    Key component = key;
+    component.form = Form::formula;
     for (std::size_t i = 0; i < at.node().items.size(); ++i)
-        formulas.push_back(read_formula(at.entry(i), now, key));
+        formulas.push_back(read_formula(at.entry(i), now, component));
     return formulas;
 }
 

@@ -25,6 +25,9 @@ struct Range {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 inline constexpr Range any_number{};
 inline constexpr Range positive{0.0, no_limit, true, false, false};
+constexpr Range at_least(double low) {
+    return {low, no_limit, false, false, false};
+}
 inline constexpr Range not_negative{0.0, no_limit, false, false, false};
 
 /// How a value is written.
@@ -85,8 +88,6 @@ Numbers3 read_turn(const Cursor& at, const Context& now, const Key& key);
 Expression read_formula(const Cursor& at, const Context& now, const Key& key);
 std::vector<Expression> read_formulas(const Cursor& at, const Context& now, const Key& key);
 bool says(const Cursor& at, const Context& now, const std::string& word);
-/// The value of a quantity text such as a cell of a table.
-double check_number(double value, const Key& key, const std::string& where, const std::string& got);
 
 void check_list(const Cursor& at);
 void check_size(const Cursor& at, std::size_t size, const Key& key, int dimension);

@@ -1,0 +1,180 @@
+// Keys of materials, shapes and grains: name, unit, range, description.
+#include "src/deck/deck_input.hpp"
+
+namespace quern {
+namespace {
+
+constexpr Range or_infinite{0.0, no_limit, true, false, true};
+
+Table<ArrayInput> array_table() {
+    using T = ArrayInput;
+    Table<T> t;
+    const Key counts{
+        .name = "counts", .form = Form::counts, .range = at_least(1), .about = "Grains along each axis"};
+    t.add(
+         counts,
+         [counts](T& array, const Cursor& at, const Context& now) {
+             check_size(at, static_cast<std::size_t>(now.dimension), counts, now.dimension);
+             Key count = counts;
+             count.form = Form::integer;
+             for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                 array.counts[i] = read_integer(at.entry(i), now, count);
+             }
+         },
+         [](const T& array, int dimension) {
+             return ids_text({array.counts.begin(), array.counts.begin() + dimension});
+         })
+        .require();
+    t.vector("origin", &T::origin, "m", any_number, "Centre of the first grain").require();
+    t.vector("step", &T::step, "m", any_number, "Distance between neighbours along each axis").require();
+    t.number("jitter", &T::jitter, "", {0.0, 0.5, false, false, false},
+             "Largest random displacement as a fraction of the step");
+    const Key scale{
+        .name = "scale", .form = Form::pair, .range = positive, .about = "Random scale: [least, largest]"};
+    t.add(
+        scale,
+        [scale](T& array, const Cursor& at, const Context& now) {
+            check_size(at, 2, scale, now.dimension);
+            Key bound = scale;
+            bound.form = Form::number;
+            array.scale = {read_number(at.entry(0), now, bound), read_number(at.entry(1), now, bound)};
+            if (array.scale[0] <= array.scale[1]) return;
+            throw InputError(at.where(), fmt::format("[{}, {}]", array.scale[0], array.scale[1]),
+                             "the least first");
+        },
+        [](const T& array, int) {
+            return vector_text({array.scale[0], array.scale[1], 0.0}, 2);
+        });
+    t.integer("seed", &T::seed, not_negative, "Of the random numbers");
+    return t;
+}
+
+void finish_grain(GrainInput& grain, const Cursor& at, const Context& now) {
+    grain.place = at.place();
+    grain.has_position = at.has("position");
+    const int n_ways = static_cast<int>(grain.has_position) + (grain.file ? 1 : 0) + (grain.array ? 1 : 0);
+    if (n_ways != 1) {
+        throw InputError(at.where(), n_ways == 0 ? "none of position, file, array" : "more than one of them",
+                         "exactly one of position, file, array");
+    }
+    if (grain.array && at.has("scale")) {
+        throw InputError(at.where("scale"), "scale beside array", "array.scale: [least, largest]");
+    }
+    if (grain.file) grain.file = (now.folder / *grain.file).lexically_normal().string();
+    for (const char* name : {"shape", "material"}) {
+        if (grain.file || at.has(name)) continue;
+        throw InputError(at.where(), fmt::format("no {}", name), fmt::format("the name of a {}", name));
+    }
+}
+
+}  // namespace
+
+Table<MaterialInput> material_table() {
+    using T = MaterialInput;
+    Table<T> t;
+    t.word("model", &T::model, {"lps", "bond_based"},
+           "Internal force: linear peridynamic solid, or bond-based");
+    t.word("plane", &T::plane, {"strain", "stress"}, "Plane strain or plane stress").in_dimension(2);
+    t.number("density", &T::density, "kg/m^3", positive, "Mass per volume").require();
+    t.number("bulk_modulus", &T::bulk, "Pa", positive, "K; exactly two of the four moduli");
+    t.number("shear_modulus", &T::shear, "Pa", positive, "G");
+    t.number("young_modulus", &T::young, "Pa", positive, "E");
+    t.number("poisson_ratio", &T::poisson, "", {-1.0, 0.5, true, true, false}, "nu");
+    t.number("horizon_ratio", &T::horizon_ratio, "", at_least(1.5), "Horizon over particle spacing");
+    t.word("influence", &T::influence, {"constant", "inverse", "conical", "gaussian"},
+           "Weight of a bond: 1, 1/r, 1 - r or exp(-(2 r)^2), r = length / horizon");
+    t.word("calibration", &T::calibration, {"none", "discrete"},
+           "Constants of the continuum, or of the sums over the actual neighbours");
+    t.word("surface_correction", &T::surface_correction, {"none", "volume"},
+           "Stiffen bonds near the surface by 2 V0 / (V_i + V_j)");
+    t.number("bond_damping", &T::bond_damping, "s", not_negative, "Kelvin-Voigt time of the bonds");
+    t.number("critical_stretch", &T::critical_stretch, "", or_infinite,
+             "Bonds break above it, in tension; .inf: never");
+    t.finish = finish_material;
+    return t;
+}
+
+Table<ShapeDeck> shape_table() {
+    using T = ShapeDeck;
+    Table<T> t;
+    t.type_of = [](const T& shape) { return shape_types()[static_cast<std::size_t>(shape.kind)]; };
+    t.word("type", &T::kind, shape_types(),
+           "disk, rectangle, regular_polygon and polygon in 2D; sphere and box in 3D; mesh in both")
+        .require();
+    t.word("filling", &T::filling, {"lattice", "rings", "mesh"},
+           "Square lattice, concentric rings or shells (disk, sphere), or a mesh by gmsh")
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+    t.number("radius", &T::radius, "m", positive, "Radius; of the corners for a regular polygon")
+        .require()
+        .only_for({"disk", "regular_polygon", "sphere"});
+    t.integer("sides", &T::sides, {3, 1000, false, false, false}, "Number of sides")
+        .require()
+        .only_for({"regular_polygon"});
+    t.vector("size", &T::size, "m", positive, "Edge lengths").require().only_for({"rectangle", "box"});
+    const Key points{.name = "vertices", .form = Form::points, .unit = "m", .about = "Corners in order"};
+    t.add(
+         points,
+         [points](T& shape, const Cursor& at, const Context& now) {
+             if (at.node().kind != Node::Kind::list || at.node().items.size() < 3) {
+                 const std::size_t n = at.node().items.size();
+                 const bool list = at.node().kind == Node::Kind::list;
+                 throw InputError(at.where(), list ? fmt::format("{} points", n) : at.node().description(),
+                                  points.expectation(2));
+             }
+             Key point = points;
+             point.form = Form::pair;
+             for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                 const Cursor entry = at.entry(i);
+                 check_size(entry, 2, point, 2);
+                 Key coordinate = point;
+                 coordinate.form = Form::number;
+                 shape.vertices.push_back({read_number(entry.entry(0), now, coordinate),
+                                           read_number(entry.entry(1), now, coordinate)});
+             }
+         },
+         [](const T& shape, int) {
+             std::string text;
+             for (const auto& [x, y] : shape.vertices) {
+                 text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number_text(x), number_text(y));
+             }
+             return text.empty() ? text : fmt::format("[{}]", text);
+         })
+        .require()
+        .only_for({"polygon"});
+    t.text("file", &T::file, "Gmsh file (.msh), relative to the deck").require().only_for({"mesh"});
+    t.number("unit", &T::unit, "m", positive, "Length of one unit of the file").only_for({"mesh"});
+    t.number("spacing", &T::spacing, "m", positive, "Wanted distance between particles")
+        .require()
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+    t.finish = finish_shape;
+    return t;
+}
+
+Table<GrainInput> grain_table() {
+    using T = GrainInput;
+    Table<T> t;
+    t.text("shape", &T::shape, "Name of a shape; may come from the file's column");
+    t.text("material", &T::material, "Name of a material; may come from the file's column");
+    t.number("scale", &T::scale, "", positive, "Size relative to the shape");
+    t.vector("position", &T::position, "m", any_number, "Centre of mass; or give file or array");
+    t.turn("angle", &T::angle, "rad", "Rotation about z; rotation vector in 3D");
+    t.vector("velocity", &T::velocity, "m/s", any_number, "Initial velocity");
+    t.turn("spin", &T::spin, "rad/s", "Initial angular velocity");
+    const Key file{
+        .name = "file", .form = Form::text, .about = "CSV with a grain a row, relative to the deck"};
+    t.add(
+        file,
+        [file](T& grain, const Cursor& at, const Context& now) { grain.file = read_text(at, now, file); },
+        [](const T& grain, int) { return grain.file ? quoted(*grain.file) : std::string(); });
+    t.section("array", &T::array, array_table(), "Grains in rows and columns");
+    t.finish = finish_grain;
+    return t;
+}
+
+const std::vector<std::string>& shape_types() {
+    static const std::vector<std::string> types = {
+        "disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "mesh"};
+    return types;
+}
+
+}  // namespace quern
