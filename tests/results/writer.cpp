@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 #include <hdf5.h>
 #include <sys/mount.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
@@ -110,6 +113,37 @@ TEST_CASE("ResultWriter: a run that dies leaves files that can be read") {
     CHECK(FrameFileReader(scratch.path("copy.h5")).n_frames() == 3);
     CHECK(python_accepts("import sys, xml.dom.minidom as m; m.parse(sys.argv[1])",
                          scratch.path("run/results.xdmf")));
+}
+
+TEST_CASE("FrameFileWriter: a run killed while it writes leaves every counted frame readable") {
+    const ScratchDirectory scratch;
+    const std::string path = scratch.path("results.h5");
+    for (const std::size_t least : {1, 3, 10, 20, 40}) {
+        std::filesystem::remove(path);
+        const pid_t child = fork();
+        if (child == 0) {
+            FrameFileWriter writer(path, 2, "", {});
+            for (int i = 0;; ++i) writer.add(make_sample_frame(2, i));
+        }
+        const auto n_frames = [&]() -> std::size_t {
+            try {
+                return FrameFileReader(path).n_frames();
+            } catch (const InputError&) {
+                return 0;  // caught in the middle of a write
+            }
+        };
+        while (n_frames() < least && waitpid(child, nullptr, WNOHANG) == 0) usleep(1000);
+        kill(child, SIGKILL);
+        waitpid(child, nullptr, 0);
+        const FrameFileReader reader(path);
+        CHECK(reader.n_frames() >= least);
+        for (std::size_t i = 0; i < reader.n_frames(); ++i) {
+            const Frame frame = reader.read(i), wrote = make_sample_frame(2, static_cast<int>(i));
+            REQUIRE(frame.step == wrote.step);
+            REQUIRE(frame.position == wrote.position);
+            REQUIRE(frame.stress == wrote.stress);
+        }
+    }
 }
 
 TEST_CASE("FrameFileWriter: frames that do not fit are refused") {
