@@ -67,18 +67,24 @@ struct FrameFileWriter::Impl {
     /// Unlimited along the first axis when it is 0.
     Hdf5Handle add_dataset(const char* name, hid_t type, std::vector<hsize_t> shape, const char* unit,
                            const std::string& description) const {
+        const bool grows = shape[0] == 0, one_number_a_frame = grows && shape.size() == 1;
         std::vector<hsize_t> limit = shape, chunk = shape;
-        if (shape[0] == 0) {
+        if (grows) {
             limit[0] = H5S_UNLIMITED;
-            chunk[0] = shape.size() == 1 ? times_per_chunk : 1;
+            chunk[0] = one_number_a_frame ? times_per_chunk : 1;
         }
-        hsize_t& particles = shape[0] == 0 && shape.size() > 1 ? chunk[1] : chunk[0];
+        hsize_t& particles = chunk[grows && !one_number_a_frame ? 1 : 0];
         particles = std::clamp<hsize_t>(particles, 1, particles_per_chunk);
 
         const Hdf5Handle properties = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
         check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "set the chunks");
-        check(H5Pset_shuffle(properties), "set the shuffle filter");
-        check(H5Pset_deflate(properties, deflate_level), "set the compression");
+        // A chunk that grows over several frames would move in the file each time it is compressed anew, and
+        // a run that is killed meanwhile would leave a chunk that cannot be read. Left alone it stays in its
+        // place.
+        if (!one_number_a_frame) {
+            check(H5Pset_shuffle(properties), "set the shuffle filter");
+            check(H5Pset_deflate(properties, deflate_level), "set the compression");
+        }
         const Hdf5Handle space =
             checked(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()), H5Sclose,
                     "make a space");
@@ -177,6 +183,8 @@ void FrameFileWriter::add(const Frame& frame) {
         file.append(file.stress, H5T_NATIVE_DOUBLE, frame.stress.data());
     }
     file.append(file.step, H5T_NATIVE_INT64, &frame.step);
+    // All that the new frame needs is on disk before /time counts it, wherever a kill hits.
+    file.check(H5Fflush(file.file, H5F_SCOPE_LOCAL), "write");
     file.append(file.time, H5T_NATIVE_DOUBLE, &frame.time);
     file.check(H5Fflush(file.file, H5F_SCOPE_LOCAL), "write");
     ++impl_->n_frames;

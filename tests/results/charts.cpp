@@ -1,27 +1,130 @@
 #include <doctest/doctest.h>
-#include "src/results/render.hpp"
-#include <cstdlib>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPNGReader.h>
+
 #include <cmath>
-#include <chrono>
-#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <stdexcept>
+
+#include "grid/error.hpp"
+#include "src/results/colors.hpp"
+#include "src/results/render.hpp"
+#include "tests/results/samples.hpp"
+
 using namespace quern;
-TEST_CASE("charts try") {
-    Chart a, b, c, d;
-    a.title="Energy of two colliding disks"; a.x_label="time [s]"; a.y_label="energy [J/m]";
-    ChartLine k,e; k.label="kinetic"; e.label="elastic"; e.color=1; e.dashed=true;
-    for(int i=0;i<400;++i){double t=i*0.0005; k.x.push_back(t);k.y.push_back(1e-3*(1-0.8*std::exp(-std::pow((t-0.1)/0.02,2)))); e.x.push_back(t); e.y.push_back(1e-3-k.y.back());}
-    ChartLine tot; tot.label="total"; tot.color=7; tot.x=k.x; tot.y.assign(k.x.size(),1e-3);
-    a.lines={k,e,tot};
-    b.title="Convergence"; b.x_label="particle spacing dx [m]"; b.y_label="relative error [-]"; b.log_x=b.log_y=true;
-    ChartLine m; m.label="measured"; m.markers=true; m.x={0.1,0.05,0.025,0.0125,0.00625}; for(double x:m.x)m.y.push_back(0.3*x*x*(1+0.2*std::sin(50*x)));
-    ChartLine r; r.label="second order"; r.dashed=true;r.color=7; r.x=m.x; for(double x:m.x)r.y.push_back(0.3*x*x);
-    b.lines={m,r};
-    c.title="Many lines everywhere: the legend finds room"; c.x_label="x [m]"; c.y_label="y [mm]";
-    for(int j=0;j<6;++j){ChartLine l; l.label="mu = 0."+std::to_string(j); l.color=j; l.markers=j%2; l.dashed=j==2; for(int i=0;i<200;++i){l.x.push_back(i*0.01);l.y.push_back(std::sin(i*0.05+j)*12345);} c.lines.push_back(l);}
-    d.title="Points"; d.x_label="angle [deg]"; d.y_label="acceleration [m/s\u00b2]";
-    ChartLine p; p.label="simulation"; p.line=false; p.color=4; for(int i=0;i<30;++i){p.x.push_back(i*3);p.y.push_back(9.81*std::sin(i*3*M_PI/180));}
-    ChartLine th; th.label="theory"; th.x=p.x; th.y=p.y; d.lines={th,p};
-    auto t0=std::chrono::steady_clock::now();
-    draw_charts({a,b,c,d},2,"/tmp/pic/charts.png");
-    printf("%.2f\n", std::chrono::duration<double>(std::chrono::steady_clock::now()-t0).count());
+
+namespace {
+
+/// Pixels of a colour in a picture, within `reach` of each channel.
+struct Picture {
+    explicit Picture(const std::string& file) {
+        reader->SetFileName(file.c_str());
+        reader->Update();
+        reader->GetOutput()->GetDimensions(size);
+    }
+    int count(Rgb color, int reach = 10) const {
+        const auto* p = static_cast<const unsigned char*>(reader->GetOutput()->GetScalarPointer());
+        int n = 0;
+        for (int i = 0; i < size[0] * size[1]; ++i, p += 3)
+            n += std::abs(p[0] - color[0]) <= reach && std::abs(p[1] - color[1]) <= reach &&
+                 std::abs(p[2] - color[2]) <= reach;
+        return n;
+    }
+    vtkNew<vtkPNGReader> reader;
+    int size[3] = {};
+};
+
+ChartLine make_line(int color, double slope, int n = 50) {
+    ChartLine line;
+    line.label = "line";
+    line.color = color;
+    for (int i = 0; i < n; ++i) {
+        line.x.push_back(i);
+        line.y.push_back(slope * i);
+    }
+    return line;
+}
+
+}  // namespace
+
+TEST_CASE("Charts: a grid has the size of its charts and the colours of its lines") {
+    const ScratchDirectory scratch;
+    Chart first, second;
+    first.lines = {make_line(0, 1.0)};
+    second.lines = {make_line(1, 1.0), make_line(2, -1.0)};
+    draw_charts({first, second, first}, 2, scratch.path("charts.png"));
+    const Picture picture(scratch.path("charts.png"));
+    CHECK(picture.size[0] == 2 * 560);
+    CHECK(picture.size[1] == 2 * 420);
+    CHECK(picture.count(cycle_color(0)) > 400);
+    CHECK(picture.count(cycle_color(1)) > 200);
+    CHECK(picture.count(cycle_color(2)) > 200);
+    CHECK(picture.count(cycle_color(3)) == 0);
+}
+
+TEST_CASE("Charts: a dashed line has about two thirds of the ink, markers add to it") {
+    const ScratchDirectory scratch;
+    const auto ink = [&](auto&& change) {
+        Chart chart;
+        chart.legend = false;
+        chart.lines = {make_line(0, 1.0)};
+        change(chart.lines[0]);
+        draw_charts({chart}, 1, scratch.path("chart.png"));
+        return static_cast<double>(Picture(scratch.path("chart.png")).count(cycle_color(0), 60));
+    };
+    const double solid = ink([](ChartLine&) {});
+    CHECK(ink([](ChartLine& line) { line.dashed = true; }) / solid ==
+          doctest::Approx(7.0 / 11.0).epsilon(0.15));
+    CHECK(ink([](ChartLine& line) { line.markers = true; }) > 1.5 * solid);
+    CHECK(ink([](ChartLine& line) { line.line = false; }) > 0.0);
+}
+
+TEST_CASE("Charts: numbers that cannot be shown are left out") {
+    const ScratchDirectory scratch;
+    Chart chart;
+    chart.log_x = chart.log_y = true;
+    chart.lines = {make_line(0, 1.0)};
+    chart.lines[0].y[3] = std::numeric_limits<double>::quiet_NaN();
+    chart.lines[0].y[4] = -1.0;
+    chart.lines[0].y[5] = std::numeric_limits<double>::infinity();
+    Chart empty;
+    empty.lines = {ChartLine{}};
+    Chart constant;
+    constant.lines = {make_line(0, 0.0)};
+    draw_charts({chart, empty, constant, Chart{}}, 2, scratch.path("charts.png"));
+    CHECK(Picture(scratch.path("charts.png")).count(cycle_color(0)) > 400);
+}
+
+TEST_CASE("Charts: the legend hides no data") {
+    const ScratchDirectory scratch;
+    // Points all over the plot: drawn with and without a legend they must leave the same ink.
+    const auto ink = [&](bool legend) {
+        Chart chart;
+        chart.legend = legend;
+        ChartLine line = make_line(1, 0.0, 400);
+        line.label = "a rather long label of a line";
+        line.line = false;
+        for (int i = 0; i < 400; ++i) {
+            line.x[static_cast<std::size_t>(i)] = i % 20;
+            line.y[static_cast<std::size_t>(i)] = i / 20;
+        }
+        chart.lines = {line};
+        draw_charts({chart}, 1, scratch.path("chart.png"));
+        return Picture(scratch.path("chart.png")).count(cycle_color(1));
+    };
+    const int without = ink(false), with = ink(true);
+    CHECK(with == doctest::Approx(without).epsilon(0.02));
+}
+
+TEST_CASE("Charts: unequal lengths and failing files are errors") {
+    const ScratchDirectory scratch;
+    Chart chart;
+    chart.lines = {make_line(0, 1.0)};
+    chart.lines[0].x.pop_back();
+    CHECK_THROWS_AS(draw_charts({chart}, 1, scratch.path("chart.png")), std::invalid_argument);
+    CHECK_THROWS_AS(draw_charts({}, 1, scratch.path("chart.png")), std::invalid_argument);
+    std::ofstream(scratch.path("file")) << "in the way";
+    CHECK_THROWS_AS(draw_charts({Chart{}}, 1, scratch.path("file/chart.png")), OutputError);
 }
