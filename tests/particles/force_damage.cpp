@@ -39,8 +39,8 @@ TEST_CASE("Bond damping: takes energy, adds no momentum and no spin, whatever br
                 turn += moment(x[i], f[i]);
             }
             CHECK(dot(f, v) < 0.0);
-            CHECK(total.norm() < 1e-13 * largest(f));              // measured 5e-15, bound 1e-13
-            CHECK(turn.norm() < 1e-13 * largest(f) * largest(x));  // measured 5e-15, bound 1e-13
+            CHECK(total.norm() < 1e-13 * largest(f));              // measured 1.5e-15, bound 1e-13
+            CHECK(turn.norm() < 1e-13 * largest(f) * largest(x));  // measured 1.0e-15, bound 1e-13
         }
     });
 }
@@ -58,7 +58,7 @@ TEST_CASE("Bond damping: none in rigid motion of a deformed grain") {
         }
         const double scale = largest(damping_forces(model, {1.7, x, stretching, {}}));
         CHECK(largest(damping_forces(model, {1.7, x, v, {}})) <
-              1e-12 * scale);  // measured 3e-14, bound 1e-12
+              1e-12 * scale);  // measured 9e-16, bound 1e-12
     });
 }
 
@@ -76,8 +76,8 @@ TEST_CASE("Bond damping: stress is bond_damping * stiffness * rate, in dilatatio
         v.push_back(rate * scale * X);
     }
     // power = -tau K2 (2 rate)^2 area of the scaled grain
-    CHECK(dot(damping_forces(model, {scale, x, v, {}}), v) ==
-          doctest::Approx(-2e-4 * K2 * 4.0 * rate * rate * area * scale * scale).epsilon(1e-12));
+    const double power = -2e-4 * K2 * 4.0 * rate * rate * area * scale * scale;
+    CHECK(std::abs(dot(damping_forces(model, {scale, x, v, {}}), v) / power - 1.0) < 1e-12);
 
     // any rate, at rest: bond_damping times the linearised force of that displacement
     for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material any) {
@@ -159,7 +159,7 @@ TEST_CASE_TEMPLATE("Damage: two halves pulled apart feel nothing, and show the v
     Field<Dim> f(x.size(), Vec<Dim>::Zero());
     model.add_internal_forces({1.0, x, {}, alive}, f);
     const double tie = material.bulk_modulus * std::pow(shape.dx, Dim - 1);
-    CHECK(largest(f) < 1e-13 * tie);  // measured 2e-15, bound 1e-13
+    CHECK(largest(f) < 1e-13 * tie);  // measured 1.1e-15, bound 1e-13
     CHECK(model.elastic_energy({1.0, x, {}, alive}) < 1e-20 * tie);
     CHECK(model.elastic_energy({1.0, x, {}, {}}) > 1e-6 * tie);
 }

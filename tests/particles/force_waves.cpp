@@ -95,7 +95,7 @@ TEST_CASE("Dispersion: plane waves in a lattice are those of the closed form, fo
                 for (const Vec<Dim>& X : shape.X) u.push_back(std::cos(k.dot(X)) * Vec<Dim>::Unit(d));
                 is.col(d) = -linear_forces(model, u)[middle] / shape.volume[middle];
             }
-            CHECK((is - expected).norm() < 1e-11 * expected.norm());  // measured 2e-13, bound 1e-11
+            CHECK((is - expected).norm() < 1e-11 * expected.norm());  // measured 3.5e-15, bound 1e-11
         }
     });
 }
@@ -113,8 +113,8 @@ TEST_CASE("Dispersion: long waves run at the speeds of the continuum, but for th
         slow += moduli[0] / n_angles;
         fast += moduli[1] / n_angles;
     }
-    CHECK(slow == doctest::Approx(G).epsilon(2e-3));                  // measured 4e-4, bound 2e-3
-    CHECK(fast == doctest::Approx(K + 4.0 / 3.0 * G).epsilon(2e-3));  // measured 4e-4, bound 2e-3
+    CHECK(std::abs(slow / G - 1.0) < 2e-3);                    // measured 1.5e-4, bound 2e-3
+    CHECK(std::abs(fast / (K + 4.0 / 3.0 * G) - 1.0) < 2e-3);  // measured 3.3e-6, bound 2e-3
 }
 
 TEST_CASE("Bar: the lowest longitudinal wave runs at sqrt(E/density)") {
@@ -143,11 +143,12 @@ TEST_CASE("Bar: the lowest longitudinal wave runs at sqrt(E/density)") {
             }
             time += dt;
         }
-        // v stands half a step before x, and was taken to stand at time 0 half a step early.
+        // v stands half a step before x.
         const double quarter = time - 0.5 * dt - dt * amplitude / (amplitude - before);
         const double measured = length / (2.0 * quarter);
-        CHECK(std::abs(measured / speed - 1.0) <
-              0.025);  // measured LPS 0.010, bond-based -0.017, bound 0.025
+        // faces of LPS are stiff, those of springs soft: measured +0.0064, -0.0247, bound 0.03
+        CHECK(std::abs(measured / speed - 1.0) < 0.03);
+        CHECK((measured > speed) == (kind == ForceModel::lps));
     }
 }
 
@@ -169,7 +170,7 @@ TEST_CASE("Stable step: omega is above the true one, by less than a percent") {
         const double truth = std::sqrt(values[n - 1]);
         const double omega = std::visit([](const auto& law) { return law.max_frequency(); }, model);
         CHECK(omega >= truth);
-        CHECK(omega < 1.01 * truth);  // measured 1.0055, bound 1.01
+        CHECK(omega < 1.01 * truth);  // measured 1.0060, bound 1.01
         // rigid motions, and they alone, cost nothing
         const int n_rigid = Dim + n_spin<Dim>;
         CHECK(std::abs(values[n_rigid - 1]) < 1e-12 * values[n - 1]);
@@ -185,8 +186,9 @@ TEST_CASE("Stable step: leapfrog is bounded just below the limit and blows up ju
         for (const double damping : {0.0, 0.3 / omega}) {
             material.bond_damping = damping;
             const double limit = critical_step(omega, damping);
-            CHECK(grow<Dim>(shape, material, 0.95 * limit, 400) < 30.0);  // measured 5.2, bound 30
-            CHECK(grow<Dim>(shape, material, 1.05 * limit, 400) > 1e10);  // measured 1e90, bound 1e10
+            CHECK(grow<Dim>(shape, material, 0.95 * limit, 400) < 30.0);  // measured 2.9, bound 30
+            CHECK(grow<Dim>(shape, material, 1.05 * limit, 400) >
+                  1e10);  // measured at least 1.9e63, bound 1e10
         }
     });
 }
