@@ -54,7 +54,8 @@ class BondNetwork {
     /// one. Zero where the intact bonds no longer span space and so tell no gradient.
     void compute_stress(const GrainView<Dim>& grain, std::span<double> stress) const;
 
-    /// Highest frequency [rad/s] of a free grain of scale 1, from above by at most 0.5 % (stable_step.hpp).
+    /// Highest frequency [rad/s] of a free grain of scale 1, 0.5 to 0.6 % above the true one
+    /// (stable_step.hpp).
     double max_frequency() const { return max_frequency_; }
 
     int n_bonds() const { return bonds_.n_bonds(); }   ///< undirected

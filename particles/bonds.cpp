@@ -11,10 +11,6 @@
 namespace quern {
 namespace {
 
-std::string place(const std::string& material, const std::string& shape) {
-    return fmt::format("material '{}' on shape '{}'", material, shape);
-}
-
 /// Nodes sorted into cells at least one horizon wide: partners lie in the 3^Dim cells around a node.
 template <int Dim>
 class Cells {
@@ -186,7 +182,7 @@ void sum_moments(Bonds<Dim>& bonds) {
 
 template <int Dim>
 Bonds<Dim> make_bonds(const Shape<Dim>& shape, const Material& material) {
-    const std::string where = place(material.name, shape.name);
+    const std::string where = fmt::format("material '{}' on shape '{}'", material.name, shape.name);
     if (!(material.horizon_ratio > 0.0) || !(shape.dx > 0.0) || shape.X.empty())
         throw InputError(where,
                          fmt::format("horizon_ratio {}, spacing {} m, {} nodes", material.horizon_ratio,

@@ -39,11 +39,11 @@ double max_frequency(const std::vector<double>& mass,
         small.computeFromTridiagonal(diagonal.head(size), beside.head(size - 1));
         top = small.eigenvalues()[size - 1];
         residual = beside[round] * std::abs(small.eigenvectors()(size - 1, size - 1));
-        if (residual <= 0.01 * top || beside[round] == 0.0) break;
+        if (residual <= 0.002 * top || beside[round] == 0.0) break;
         before = q;
         q = next / beside[round];
     }
-    return std::sqrt(top + residual);
+    return 1.005 * std::sqrt(top + residual);
 }
 
 double critical_step(double omega, double bond_damping) {

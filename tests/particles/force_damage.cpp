@@ -1,0 +1,165 @@
+// What dissipates: damping in the bonds, and their breaking.
+#include <limits>
+
+#include "tests/particles/force_cases.hpp"
+
+using namespace quern;
+using namespace quern::test;
+
+namespace {
+
+template <int Dim>
+Field<Dim> damping_forces(const PeridynamicModel<Dim>& model, const GrainView<Dim>& grain) {
+    Field<Dim> f(grain.x.size(), Vec<Dim>::Zero());
+    std::visit([&](const auto& law) { law.add_damping_forces(grain, f); }, model);
+    return f;
+}
+
+}  // namespace
+
+TEST_CASE("Bond damping: takes energy, adds no momentum and no spin, whatever breaks") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material material) {
+        material.bond_damping = 1e-4;
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Field<Dim> x = make_deformed(shape, 1.7);
+        std::mt19937 random(9);
+        std::normal_distribution<double> any;
+        const std::vector<std::uint8_t> broken = make_broken(count_bonds(model));
+        for (int trial = 0; trial < 4; ++trial) {
+            Field<Dim> v(x.size());
+            for (Vec<Dim>& value : v)
+                for (int d = 0; d < Dim; ++d) value[d] = any(random);
+            const std::span<const std::uint8_t> alive = trial < 2 ? std::span<const std::uint8_t>() : broken;
+            const Field<Dim> f = damping_forces(model, {1.7, x, v, alive});
+            Vec<Dim> total = Vec<Dim>::Zero();
+            Spin<Dim> turn = Spin<Dim>::Zero();
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                total += f[i];
+                turn += moment(x[i], f[i]);
+            }
+            CHECK(dot(f, v) < 0.0);
+            CHECK(total.norm() < 1e-13 * largest(f));              // measured 1.5e-15, bound 1e-13
+            CHECK(turn.norm() < 1e-13 * largest(f) * largest(x));  // measured 1.0e-15, bound 1e-13
+        }
+    });
+}
+
+TEST_CASE("Bond damping: none in rigid motion of a deformed grain") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material material) {
+        material.bond_damping = 1e-4;
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Field<Dim> x = make_deformed(shape, 1.7);
+        Field<Dim> v, stretching;
+        for (const Vec<Dim>& point : x) {
+            v.push_back(cross(Spin<Dim>(Spin<Dim>::Constant(3.0)), point) + Vec<Dim>::Constant(0.2));
+            stretching.push_back(3.0 * point);
+        }
+        const double scale = largest(damping_forces(model, {1.7, x, stretching, {}}));
+        CHECK(largest(damping_forces(model, {1.7, x, v, {}})) <
+              1e-12 * scale);  // measured 9e-16, bound 1e-12
+    });
+}
+
+TEST_CASE("Bond damping: stress is bond_damping * stiffness * rate, in dilatation and for any rate") {
+    Material material = make_material(ForceModel::lps, PlaneState::strain, 2);
+    material.bond_damping = 2e-4;
+    const Shape<2> shape = make_test_shape<2>();
+    const auto model = make_model(shape, material);
+    double area = 0.0;
+    for (const double volume : shape.volume) area += volume;
+    const double rate = 0.3, K2 = material.bulk_modulus + material.shear_modulus / 3.0, scale = 1.7;
+    Field<2> x, v;
+    for (const Vec<2>& X : shape.X) {
+        x.push_back(scale * X);
+        v.push_back(rate * scale * X);
+    }
+    // power = -tau K2 (2 rate)^2 area of the scaled grain
+    const double power = -2e-4 * K2 * 4.0 * rate * rate * area * scale * scale;
+    CHECK(std::abs(dot(damping_forces(model, {scale, x, v, {}}), v) / power - 1.0) < 1e-12);
+
+    // any rate, at rest: bond_damping times the linearised force of that displacement
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material any) {
+        any.bond_damping = 2e-4;
+        const Shape<Dim> grain = make_test_shape<Dim>();
+        const auto law = make_model(grain, any);
+        const Field<Dim> velocity = make_deformed(grain, 1.0);
+        Field<Dim> expected = linear_forces(law, velocity);
+        for (Vec<Dim>& force : expected) force *= 2e-4;
+        CHECK(largest_difference(damping_forces(law, {1.0, grain.X, velocity, {}}), expected) <
+              1e-13 * largest(expected));
+    });
+}
+
+TEST_CASE("Bonds break: in tension only, above the critical stretch only, for good") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material material) {
+        const double s0 = 0.01, scale = 2.0;
+        material.critical_stretch = s0;
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const int n_bonds = count_bonds(model);
+        std::vector<std::uint8_t> alive(n_bonds, 1);
+        const auto pull = [&](double stretch) {
+            Field<Dim> x;
+            for (const Vec<Dim>& X : shape.X) x.push_back(scale * (1.0 + stretch) * X);
+            return std::visit(
+                [&](const auto& law) {
+                    return law.break_bonds({scale, x, {}, alive}, alive);
+                },
+                model);
+        };
+        CHECK(pull(-0.5) == 0);
+        CHECK(pull(s0 * (1.0 - 1e-9)) == 0);
+        CHECK(pull(s0 * (1.0 + 1e-9)) == n_bonds);
+        CHECK(pull(s0 * 2.0) == 0);
+        CHECK(pull(0.0) == 0);
+        CHECK(*std::max_element(alive.begin(), alive.end()) == 0);
+        CHECK(largest(forces(model, {scale, make_deformed(shape, scale), {}, alive})) == 0.0);
+    });
+}
+
+TEST_CASE("Bonds break: never without a critical stretch") {
+    const Shape<2> shape = make_test_shape<2>();
+    const Lps<2> model(shape, make_material(ForceModel::lps, PlaneState::strain, 2));
+    Field<2> x;
+    for (const Vec<2>& X : shape.X) x.push_back(100.0 * X);
+    std::vector<std::uint8_t> alive(model.n_bonds(), 1);
+    CHECK(model.break_bonds({1.0, x, {}, alive}, alive) == 0);
+}
+
+TEST_CASE_TEMPLATE("Damage: two halves pulled apart feel nothing, and show the volume they have lost", Tag,
+                   std::integral_constant<int, 2>, std::integral_constant<int, 3>) {
+    constexpr int Dim = Tag::value;
+    Material material = make_material(ForceModel::lps, PlaneState::strain, Dim);
+    material.critical_stretch = 0.05;
+    material.influence = Influence::constant;
+    const Shape<Dim> shape = make_lattice<Dim>(IntVec<Dim>::Constant(8), 0.01);
+    const Lps<Dim> model(shape, material);
+    Field<Dim> x = shape.X;
+    for (Vec<Dim>& point : x)
+        if (point[0] > 0.0) point[0] += 0.02;
+    std::vector<std::uint8_t> alive(model.n_bonds(), 1);
+    const int n_broken = model.break_bonds({1.0, x, {}, alive}, alive);
+    int n_crossing = 0;
+    std::vector<double> damage(shape.X.size()), expected(shape.X.size(), 0.0);
+    for (int i = 0; i < shape.n_nodes(); ++i) {
+        double across = 0.0, whole = 0.0;
+        for (const auto [j, b] : model.bonds().family_of(i)) {
+            whole += shape.volume[j];
+            if (shape.X[i][0] * shape.X[j][0] < 0.0) across += shape.volume[j], ++n_crossing;
+        }
+        expected[i] = across / whole;
+    }
+    CHECK(2 * n_broken == n_crossing);
+    model.compute_damage({1.0, x, {}, alive}, damage);
+    for (std::size_t i = 0; i < damage.size(); ++i)
+        REQUIRE(damage[i] == doctest::Approx(expected[i]).epsilon(1e-14));
+
+    Field<Dim> f(x.size(), Vec<Dim>::Zero());
+    model.add_internal_forces({1.0, x, {}, alive}, f);
+    const double tie = material.bulk_modulus * std::pow(shape.dx, Dim - 1);
+    CHECK(largest(f) < 1e-13 * tie);  // measured 1.1e-15, bound 1e-13
+    CHECK(model.elastic_energy({1.0, x, {}, alive}) < 1e-20 * tie);
+    CHECK(model.elastic_energy({1.0, x, {}, {}}) > 1e-6 * tie);
+}
