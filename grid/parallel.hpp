@@ -13,9 +13,15 @@
 
 namespace quern::parallel {
 
-inline int n_threads() { return omp_get_max_threads(); }
-inline void set_threads(int n) { omp_set_num_threads(std::max(1, n)); }
-inline int thread_id() { return omp_get_thread_num(); }
+inline int n_threads() {
+    return omp_get_max_threads();
+}
+inline void set_threads(int n) {
+    omp_set_num_threads(std::max(1, n));
+}
+inline int thread_id() {
+    return omp_get_thread_num();
+}
 
 /// Calls body(i) for i in [0, n). Bodies must be independent. Loops shorter than `serial_below` stay on the
 /// calling thread, where waking the others would cost more than it saves.
@@ -42,7 +48,7 @@ T sum(std::size_t n, const T& zero, Term&& term) {
         T total = zero;
         for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
         partial[b] = total;
-    });
+    }, 16);
     T total = zero;
     for (const T& part : partial) total += part;
     return total;

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdint>
@@ -30,12 +29,20 @@ template <int Dim>
 using Spin = Eigen::Matrix<double, n_spin<Dim>, 1>;
 
 /// omega x r: velocity [m/s] at lever r [m] of a rotation omega [rad/s].
-inline Vec<2> cross(const Spin<2>& omega, const Vec<2>& r) { return {-omega[0] * r[1], omega[0] * r[0]}; }
-inline Vec<3> cross(const Spin<3>& omega, const Vec<3>& r) { return omega.cross(r); }
+inline Vec<2> cross(const Spin<2>& omega, const Vec<2>& r) {
+    return {-omega[0] * r[1], omega[0] * r[0]};
+}
+inline Vec<3> cross(const Spin<3>& omega, const Vec<3>& r) {
+    return omega.cross(r);
+}
 
 /// r x f: moment [N m] of a force f [N] at lever r [m].
-inline Spin<2> moment(const Vec<2>& r, const Vec<2>& f) { return Spin<2>(r[0] * f[1] - r[1] * f[0]); }
-inline Spin<3> moment(const Vec<3>& r, const Vec<3>& f) { return r.cross(f); }
+inline Spin<2> moment(const Vec<2>& r, const Vec<2>& f) {
+    return Spin<2>(r[0] * f[1] - r[1] * f[0]);
+}
+inline Spin<3> moment(const Vec<3>& r, const Vec<3>& f) {
+    return r.cross(f);
+}
 
 /// Rotation matrix of a rotation vector (2D: angle about z; 3D: axis times angle) [rad].
 inline Mat<2> rotation_matrix(const Spin<2>& angle) {

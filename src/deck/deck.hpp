@@ -20,13 +20,17 @@ using Numbers3 = std::array<double, 3>;
 /// Where a value stands in the user's files, for messages.
 struct Place {
     std::string file;
-    int line = 0;     ///< from 1; 0 when it came from the command line or from a default
-    std::string key;  ///< dotted path, e.g. "materials.glass.density"
+    int line = 0;              ///< from 1; 0 when it came from the command line or from a default
+    std::string key;           ///< dotted path, e.g. "materials.glass.density"
     std::string text() const;  ///< "file:line: key"
 };
 
 enum class ShapeKind { disk, rectangle, regular_polygon, polygon, sphere, box, mesh };
-enum class Filling { lattice, rings, mesh };  ///< rings: concentric (disk), shells (sphere); mesh: gmsh in process
+enum class Filling {
+    lattice,
+    rings,
+    mesh
+};  ///< rings: concentric (disk), shells (sphere); mesh: gmsh in process
 
 struct ShapeDeck {
     std::string name;
@@ -87,17 +91,17 @@ struct ContactDeck {
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 10;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
-    bool tile = true;         ///< gap at the closest approach of two fitted profiles; false: from mean positions
-    bool curvature = true;    ///< profiles know the reference curvature
-    bool rotation = true;     ///< impulses act at one point: rotation term of the map
-    bool gap_test = true;     ///< allow approach at gap / dt
-    bool exact_mass = true;   ///< exact inverse mass of the impulse map; false: lumped nodal mass
+    bool tile = true;  ///< gap at the closest approach of two fitted profiles; false: from mean positions
+    bool curvature = true;   ///< profiles know the reference curvature
+    bool rotation = true;    ///< impulses act at one point: rotation term of the map
+    bool gap_test = true;    ///< allow approach at gap / dt
+    bool exact_mass = true;  ///< exact inverse mass of the impulse map; false: lumped nodal mass
     Place place;
 };
 
 /// Body force on grains: an acceleration, or a force per volume, as functions of x, y, z, t.
 struct LoadDeck {
-    std::vector<int> grains;  ///< empty: all
+    std::vector<int> grains;           ///< empty: all
     std::optional<Expression> region;  ///< of reference x, y, z (as placed at t = 0); non-zero: inside
     bool per_mass = true;              ///< true: acceleration [m/s^2]; false: force density [N/m^3]
     std::vector<Expression> value;     ///< one an axis
@@ -115,16 +119,16 @@ struct ConstraintDeck {
 /// Relaxation before the clock starts: own gravity, damping and friction, then velocities are zeroed and
 /// the initial velocities of the deck are given.
 struct PrepareDeck {
-    double duration = 0.0;             ///< [s]
-    std::optional<Numbers3> gravity;   ///< [m/s^2]; none: as in the run
-    double mass_damping = 0.0;         ///< [1/s]
-    std::optional<double> friction;    ///< for all contacts; none: as in the run
+    double duration = 0.0;            ///< [s]
+    std::optional<Numbers3> gravity;  ///< [m/s^2]; none: as in the run
+    double mass_damping = 0.0;        ///< [1/s]
+    std::optional<double> friction;   ///< for all contacts; none: as in the run
 };
 
 struct TimeDeck {
-    double end = 0.0;          ///< [s]
-    double step = 0.0;         ///< [s]; 0: automatic
-    double safety = 0.6;       ///< automatic step = safety * 2 / omega_max
+    double end = 0.0;     ///< [s]
+    double step = 0.0;    ///< [s]; 0: automatic
+    double safety = 0.6;  ///< automatic step = safety * 2 / omega_max
     Place place;
 };
 
@@ -133,13 +137,13 @@ struct OutputDeck {
     double history_interval = 0.0;  ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
     std::vector<int> track;         ///< grains in grains.csv
     bool track_all = false;
-    bool vtp = false;               ///< also a .vtp series
+    bool vtp = false;  ///< also a .vtp series
     Place place;
 };
 
 struct Deck {
     std::string title;
-    std::string file;       ///< path as given
+    std::string file;  ///< path as given
     int dimension = 2;
     std::vector<Material> materials;
     std::vector<ShapeDeck> shapes;

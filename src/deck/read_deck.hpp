@@ -18,4 +18,7 @@ std::string resolved_yaml(const Deck& deck);
 /// JSON Schema (draft 2020-12) of the deck, made from the same table of keys as the reader.
 std::string deck_schema();
 
+/// The same table as Markdown: the reference in docs/deck.md.
+std::string deck_reference();
+
 }  // namespace quern

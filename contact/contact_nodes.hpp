@@ -1,0 +1,119 @@
+// Grid nodes where something can touch, and what each grain has there.
+//
+// A node is a contact node if surface particles of two grains, or of one grain near a wall, have it in the
+// support of their linear functions. Each grain at a contact node owns a slot: the particles around the
+// node, their mass and inertia. Memory follows slots: nothing is stored per grain and node.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "contact/contact.hpp"
+#include "grid/node_pages.hpp"
+#include "grid/shape_functions.hpp"
+
+namespace quern {
+
+/// One particle in the support of a node.
+template <int Dim>
+struct Support {
+    int particle;
+    int surface;  ///< index into Shape::surface, or -1
+    double N;     ///< linear shape function
+    double w;     ///< impulse weight: N at the surface, q N inside
+    Vec<Dim> d;   ///< x_p - x_a [m]
+};
+
+/// One grain at one contact node.
+template <int Dim>
+struct Slot {
+    int grain;
+    int node;           ///< contact node
+    IntVec<Dim> index;  ///< node, not wrapped: where the grain sees it
+    const Support<Dim>* support;
+    int n_support;
+    double m;     ///< sum m_p w_p [kg]
+    Vec<Dim> xb;  ///< sum m_p w_p d_p / m, from the node [m]
+    Eigen::Matrix<double, n_spin<Dim>, n_spin<Dim>>
+        Y;              ///< inverse of sum m_p w_p (|r|^2 1 - r r^T); 0: degenerate
+    bool rotates;       ///< Y is usable
+    double volume;      ///< sum N_p V_p
+    Vec<Dim> gradient;  ///< sum V_p grad_a B(x_a - x_p), quadratic B-spline: points into the grain
+};
+
+/// Options of the search, fixed for a run.
+struct ContactNodeOptions {
+    bool all_nodes = false;      ///< every node of every grain is kept (flip coupling)
+    bool all_particles = false;  ///< interior particles make contact nodes as well (seed rule)
+    double wall_reach = 0.75;    ///< nodes nearer to a wall than this have a slot [h]
+    double interior_weight = 1.0;
+};
+
+template <int Dim>
+class ContactNodes {
+  public:
+    ContactNodes(const CartesianGrid<Dim>& grid, const ContactNodeOptions& options)
+        : grid_(grid), options_(options), marks_(grid, 0) {}
+
+    /// Finds contact nodes and fills slots for the positions in `scene`. Positions must be inside the grid.
+    void find(const ContactScene<Dim>& scene);
+
+    const CartesianGrid<Dim>& grid() const { return grid_; }
+    std::vector<Slot<Dim>>& slots() { return slots_; }
+    const std::vector<Slot<Dim>>& slots() const { return slots_; }
+    int n_nodes() const { return static_cast<int>(node_begin_.size()) - 1; }
+
+    /// Slots of a node, ordered by where their mass is, not by the number of the grain.
+    std::span<const int> slots_of(int node) const {
+        return {node_slots_.data() + node_begin_[node], node_slots_.data() + node_begin_[node + 1]};
+    }
+    /// Slots of a grain are [first, last).
+    std::pair<int, int> slots_of_grain(int grain) const {
+        return {grain_slots_[grain], grain_slots_[grain + 1]};
+    }
+
+  private:
+    struct Window {  ///< box of nodes around a grain
+        IntVec<Dim> lo, size;
+        int local(const IntVec<Dim>& node) const {
+            int i = 0;
+            for (int a = Dim - 1; a >= 0; --a) i = i * size[a] + node[a] - lo[a];
+            return i;
+        }
+        IntVec<Dim> node(int i) const {
+            IntVec<Dim> n;
+            for (int a = 0; a < Dim; ++a, i /= size[a - 1]) n[a] = lo[a] + i % size[a];
+            return n;
+        }
+        int n() const { return size.prod(); }
+    };
+    struct Scratch {  ///< of one thread
+        std::vector<int> window, base, count;
+        std::vector<Support<Dim>> support;
+    };
+
+    void mark_touched(const ContactScene<Dim>& scene);
+    void select(const ContactScene<Dim>& scene);
+    void number_nodes();
+    void fill_slots(const ContactScene<Dim>& scene, int grain, Scratch& scratch);
+    IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
+        IntVec<Dim> w;
+        for (int a = 0; a < Dim; ++a) w[a] = grid_.wrapped(a, node[a]);
+        return w;
+    }
+    bool near_wall(const ContactScene<Dim>& scene, const IntVec<Dim>& node) const;
+
+    CartesianGrid<Dim> grid_;
+    ContactNodeOptions options_;
+    NodePages<Dim, std::int32_t> marks_;  ///< number of grains at a node; later -1 - contact node
+
+    std::vector<Window> windows_;                     ///< [n_grains]
+    std::vector<std::vector<int>> touched_;           ///< [n_grains] nodes as local window index, ascending
+    std::vector<int> n_selected_;                     ///< [n_grains] of touched_, moved to its front
+    std::vector<std::vector<Support<Dim>>> support_;  ///< [n_grains]
+    std::vector<int> grain_slots_, node_begin_, node_slots_;
+    std::vector<Slot<Dim>> slots_;
+    std::vector<Scratch> scratch_;
+};
+
+}  // namespace quern

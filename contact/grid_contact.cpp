@@ -1,0 +1,96 @@
+#include "contact/grid_contact.hpp"
+
+#include "contact/seed_rule.hpp"
+#include "grid/parallel.hpp"
+
+namespace quern {
+
+namespace {
+
+ContactNodeOptions node_options(const GridContactOptions& options) {
+    ContactNodeOptions nodes;
+    nodes.all_nodes = options.coupling == GridCoupling::flip;
+    nodes.all_particles = options.rule == GridRule::seed;
+    nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
+    const bool nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
+    nodes.interior_weight = nodal ? 1.0 : options.interior_weight;
+    return nodes;
+}
+
+}  // namespace
+
+template <int Dim>
+GridContact<Dim>::GridContact(const CartesianGrid<Dim>& grid, const GridContactOptions& options)
+    : options_(options), nodes_(grid, node_options(options)), pair_(options) {}
+
+template <int Dim>
+const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>& scene,
+                                                         const ContactTrial<Dim>& trial) {
+    report_.normal_work = report_.friction_work = report_.wall_work = 0.0;
+    report_.n_contacts = 0;
+    report_.sweeps = 0;
+    report_.converged = true;
+    report_.grain_impulse.assign(scene.grains.size(), Vec<Dim>::Zero());
+    report_.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
+    report_.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
+    nodes_.find(scene);
+    report_.n_nodes = nodes_.n_nodes();
+    if (options_.rule == GridRule::pair && options_.coupling == GridCoupling::impulse)
+        pair_.solve_particles(nodes_, scene, trial, report_);
+    else
+        solve_on_nodes(scene, trial);
+    return report_;
+}
+
+template <int Dim>
+void GridContact<Dim>::to_slots(const ContactScene<Dim>& scene, std::span<const Vec<Dim>> v,
+                                std::vector<Vec<Dim>>& nodal) const {
+    nodal.resize(nodes_.slots().size());
+    parallel::for_each(
+        nodal.size(),
+        [&](std::size_t s) {
+            const Slot<Dim>& slot = nodes_.slots()[s];
+            Vec<Dim> momentum = Vec<Dim>::Zero();
+            for (int k = 0; k < slot.n_support; ++k) {
+                const Support<Dim>& e = slot.support[k];
+                momentum += scene.mass[e.particle] * e.w * v[e.particle];
+            }
+            nodal[s] = slot.m > 0.0 ? Vec<Dim>(momentum / slot.m) : Vec<Dim>(Vec<Dim>::Zero());
+        },
+        256);
+}
+
+template <int Dim>
+void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {
+    to_slots(scene, trial.v_before, nodal_before_);
+    to_slots(scene, trial.v, nodal_trial_);
+    nodal_ = nodal_trial_;
+    if (options_.rule == GridRule::pair)
+        pair_.solve_nodal(nodes_, scene, trial.dt, nodal_, nodal_before_, report_);
+    else
+        apply_seed_rule<Dim>(nodes_, scene, nodal_, nodal_before_, report_);
+    const bool flip = options_.coupling == GridCoupling::flip;
+    parallel::for_each(scene.grains.size(), [&](std::size_t g) {
+        const Grain<Dim>& grain = scene.grains[g];
+        if (flip)
+            for (int p = grain.first; p < grain.first + grain.count; ++p) {
+                trial.v[p] = trial.v_before[p];
+                trial.drift[p].setZero();
+            }
+        const auto [first, last] = nodes_.slots_of_grain(static_cast<int>(g));
+        for (int s = first; s < last; ++s) {
+            const Slot<Dim>& slot = nodes_.slots()[s];
+            const Vec<Dim> dv = nodal_[s] - (flip ? nodal_before_[s] : nodal_trial_[s]);
+            for (int k = 0; k < slot.n_support; ++k) {
+                const Support<Dim>& e = slot.support[k];
+                trial.v[e.particle] += e.N * dv;
+                if (flip) trial.drift[e.particle] += e.N * nodal_[s];
+            }
+        }
+    });
+}
+
+template class GridContact<2>;
+template class GridContact<3>;
+
+}  // namespace quern

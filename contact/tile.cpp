@@ -1,0 +1,167 @@
+#include "contact/tile.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace quern {
+
+namespace {
+
+constexpr double fit_regularisation = 1e-3;  ///< variance [h^2] below which a slope is not believed
+constexpr double flat_on_flat = 0.2;         ///< curvature [1/h] that centres two flat faces
+constexpr double max_slope = 0.5;
+constexpr double max_interface_distance = 0.75;  ///< from the node [h]
+constexpr double corner_filter = 0.6;  ///< least cosine between a particle's normal and the contact's
+
+/// y(s) = c0 + c1.s + c2 |s|^2, in units of h.
+template <int Dim>
+struct Profile {
+    using Tangential = Eigen::Matrix<double, Dim - 1, 1>;
+    double c0 = 0.0;
+    Tangential c1 = Tangential::Zero();
+    double c2 = 0.0;
+
+    double operator()(const Tangential& s) const { return c0 + c1.dot(s) + c2 * s.squaredNorm(); }
+};
+
+template <int Dim>
+std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const Vec<Dim>& n,
+                                const Eigen::Matrix<double, Dim, Dim - 1>& T, double h,
+                                const GridContactOptions& options) {
+    using Tangential = typename Profile<Dim>::Tangential;
+    const Slot<Dim>& slot = *side.slot;
+    const Grain<Dim>& grain = *side.grain;
+    double S = 0.0, kappa = 0.0, y_mean = 0.0;
+    Tangential s_mean = Tangential::Zero(), sy = Tangential::Zero(), s_squared = Tangential::Zero();
+    Eigen::Matrix<double, Dim - 1, Dim - 1> ss = Eigen::Matrix<double, Dim - 1, Dim - 1>::Zero();
+    double squared_mean = 0.0;
+    for (int k = 0; k < slot.n_support; ++k) {
+        const Support<Dim>& e = slot.support[k];
+        if (e.surface < 0) continue;
+        const SurfacePoint<Dim>& point = grain.shape->surface[e.surface];
+        if (grain.shape->cornered && sigma * n.dot(*side.rotation * point.nu) < corner_filter) continue;
+        const Tangential s = T.transpose() * e.d / h;
+        const double y = (n.dot(e.d) + sigma * point.delta * grain.scale) / h;
+        S += e.N;
+        kappa += e.N * point.kappa;
+        s_mean += e.N * s;
+        y_mean += e.N * y;
+        sy += e.N * y * s;
+        ss += e.N * s * s.transpose();
+        squared_mean += e.N * s.squaredNorm();
+        s_squared += e.N * s.squaredNorm() * s;
+    }
+    if (!(S > 0.0)) return std::nullopt;
+    Profile<Dim> profile;
+    if (options.curvature) profile.c2 = -sigma * kappa / S / grain.scale * h / 2.0;
+    s_mean /= S;
+    // Moments of y - c2 |s|^2, from those of y: one pass over the particles for both.
+    y_mean = y_mean / S - profile.c2 * squared_mean / S;
+    if (options.tile) {
+        const Tangential covariance = sy / S - profile.c2 * s_squared / S - y_mean * s_mean;
+        Eigen::Matrix<double, Dim - 1, Dim - 1> variance = ss / S - s_mean * s_mean.transpose();
+        variance.diagonal().array() += fit_regularisation;
+        profile.c1 = variance.inverse() * covariance;
+    }
+    profile.c0 = y_mean - profile.c1.dot(s_mean);
+    if (!options.tile) {  // mean positions: a flat profile at the mean height
+        profile.c0 += profile.c2 * squared_mean / S;
+        profile.c2 = 0.0;
+    }
+    return profile;
+}
+
+template <int Dim>
+Tile<Dim> closest_approach(const Profile<Dim>& A, const Profile<Dim>& B, const Vec<Dim>& n,
+                           const Eigen::Matrix<double, Dim, Dim - 1>& T, double h,
+                           typename Profile<Dim>::Tangential& s) {
+    const typename Profile<Dim>::Tangential q1 = B.c1 - A.c1;
+    const double q2 = B.c2 - A.c2;
+    const double curvature = A.c2 == 0.0 && B.c2 == 0.0 ? q2 + flat_on_flat : q2;
+    for (int a = 0; a < Dim - 1; ++a) {
+        if (curvature > 0.0)
+            s[a] = std::clamp(-q1[a] / (2.0 * curvature), -0.5, 0.5);
+        else  // a hollow: the gap is least at an end of the cell
+            s[a] = q1[a] > 0.0 ? -0.5 : (q1[a] < 0.0 ? 0.5 : 0.0);
+    }
+    Tile<Dim> tile;
+    tile.normal = n;
+    tile.gap = h * (B(s) - A(s));
+    tile.point = h * (T * s) + h * 0.5 * (A(s) + B(s)) * n;
+    return tile;
+}
+
+}  // namespace
+
+template <>
+Eigen::Matrix<double, 2, 1> tangents<2>(const Vec<2>& n) {
+    return {-n[1], n[0]};
+}
+
+template <>
+Eigen::Matrix<double, 3, 2> tangents<3>(const Vec<3>& n) {
+    int least = 0;
+    for (int a = 1; a < 3; ++a)
+        if (std::abs(n[a]) < std::abs(n[least])) least = a;
+    const Vec<3> t = n.cross(Vec<3>::Unit(least)).normalized();
+    Eigen::Matrix<double, 3, 2> T;
+    T.col(0) = t;
+    T.col(1) = n.cross(t);
+    return T;
+}
+
+template <int Dim>
+std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
+                                   const GridContactOptions& options) {
+    constexpr double cell = Dim;  // exponent of h
+    const double full = std::min({std::pow(h, cell), A.grain->volume, B.grain->volume});
+    if (std::min(A.slot->volume, B.slot->volume) < 0.1 * full) return std::nullopt;
+    Vec<Dim> n = B.slot->gradient - A.slot->gradient;
+    const double length = n.norm();
+    if (!(length > 0.0)) return std::nullopt;
+    n /= length;
+    Tile<Dim> tile;
+    for (int pass = 0; pass < 2; ++pass) {
+        const Eigen::Matrix<double, Dim, Dim - 1> T = tangents<Dim>(n);
+        const auto a = fit<Dim>(A, 1.0, n, T, h, options);
+        const auto b = fit<Dim>(B, -1.0, n, T, h, options);
+        if (!a || !b) return std::nullopt;
+        typename Profile<Dim>::Tangential s;
+        tile = closest_approach<Dim>(*a, *b, n, T, h, s);
+        if (std::abs(tile.point.dot(n)) > max_interface_distance * h) return std::nullopt;
+        if (pass == 0 && options.tile) {
+            typename Profile<Dim>::Tangential m = 0.5 * (a->c1 + b->c1) + (a->c2 + b->c2) * s;
+            m = m.cwiseMax(-max_slope).cwiseMin(max_slope);
+            n = (n - T * m).normalized();
+        }
+    }
+    return tile;
+}
+
+template <int Dim>
+std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
+                                        double h, const GridContactOptions& options) {
+    const double full = std::min(std::pow(h, static_cast<double>(Dim)), A.grain->volume);
+    if (A.slot->volume < 0.1 * full) return std::nullopt;
+    const Vec<Dim> n = -wall.normal;
+    const Eigen::Matrix<double, Dim, Dim - 1> T = tangents<Dim>(n);
+    const auto a = fit<Dim>(A, 1.0, n, T, h, options);
+    if (!a) return std::nullopt;
+    Profile<Dim> plane;
+    plane.c0 = wall_offset / h;
+    typename Profile<Dim>::Tangential s;
+    const Tile<Dim> tile = closest_approach<Dim>(*a, plane, n, T, h, s);
+    if (std::abs(tile.point.dot(n)) > max_interface_distance * h) return std::nullopt;
+    return tile;
+}
+
+template std::optional<Tile<2>> make_tile<2>(const TileSide<2>&, const TileSide<2>&, double,
+                                             const GridContactOptions&);
+template std::optional<Tile<3>> make_tile<3>(const TileSide<3>&, const TileSide<3>&, double,
+                                             const GridContactOptions&);
+template std::optional<Tile<2>> make_wall_tile<2>(const TileSide<2>&, const Wall<2>&, double, double,
+                                                  const GridContactOptions&);
+template std::optional<Tile<3>> make_wall_tile<3>(const TileSide<3>&, const Wall<3>&, double, double,
+                                                  const GridContactOptions&);
+
+}  // namespace quern

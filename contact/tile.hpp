@@ -1,0 +1,55 @@
+// Geometry of one contact: where two surfaces come closest inside one cell of the grid.
+//
+// Around a node each surface is a parabola over the tangent plane, fitted to the surface particles in the
+// node's support with weights N_ap (s: tangential, y: normal coordinate, both from the node, in units of h):
+//
+//     y_p = n.d_p/h + sigma delta_p/h - c2 |s_p|^2,   c2 = -sigma kappa h/2,   sigma = +1 (A), -1 (B)
+//     c1  = (cov(s,s) + 1e-3)^-1 cov(s,y),   c0 = mean(y) - c1.mean(s)
+//     y_f(s) = c0 + c1.s + c2 |s|^2
+//
+// The gap q(s) = y_B - y_A = q0 + q1.s + q2 |s|^2 is least at s* = clamp(-q1/(2 q2), -1/2, 1/2):
+//
+//     g = h q(s*),   x_c = x_a + h T s* + h (y_A(s*) + y_B(s*))/2 n
+//
+// and the normal is turned by the mean slope there, m = (c1_A + c1_B)/2 + (c2_A + c2_B) s*, |m| <= 1/2, once.
+// delta_p: reference distance of the particle from the true surface [m]; kappa: reference curvature [1/m],
+// in 3D the mean of the two (exact for spheres and planes). Two flat faces have no closest point; q2 + 0.2
+// then keeps s* near the middle of the cell. A wall is a plane that keeps its normal.
+#pragma once
+
+#include <optional>
+
+#include "contact/contact_nodes.hpp"
+
+namespace quern {
+
+template <int Dim>
+struct Tile {
+    Vec<Dim> normal;  ///< unit, from A to B
+    Vec<Dim> point;   ///< where the impulse acts, from the node [m]
+    double gap;       ///< negative: overlap [m]
+};
+
+/// What one side of a tile is made of.
+template <int Dim>
+struct TileSide {
+    const Slot<Dim>* slot;
+    const Grain<Dim>* grain;
+    const Mat<Dim>* rotation;  ///< of the grain; read for cornered shapes only
+};
+
+/// Orthonormal tangents of a unit normal, as columns.
+template <int Dim>
+Eigen::Matrix<double, Dim, Dim - 1> tangents(const Vec<Dim>& n);
+
+/// Tile of two grains; nothing if the surfaces are not both near the node.
+template <int Dim>
+std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
+                                   const GridContactOptions& options);
+
+/// Tile of a grain and a wall. `wall_offset` [m]: distance of the node from the wall, positive inside.
+template <int Dim>
+std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
+                                        double h, const GridContactOptions& options);
+
+}  // namespace quern

@@ -1,0 +1,117 @@
+#include "particles/bond_network.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "grid/error.hpp"
+#include "particles/stable_step.hpp"
+#include "particles/strain.hpp"
+
+namespace quern {
+
+template <int Dim>
+BondNetwork<Dim>::BondNetwork(const Shape<Dim>& shape, const Material& material, Kernel kernel)
+    : material_(material), kernel_(kernel), bonds_(make_bonds(shape, material)) {
+    const auto check = [&](const char* key, double value) {
+        if (!(value > 0.0))
+            throw InputError(fmt::format("material '{}': {}", material.name, key),
+                             fmt::format("{:.6g}", value), "a positive number");
+    };
+    check("density", material.density);
+    check("bulk_modulus", material.bulk_modulus);
+    check("shear_modulus", material.shear_modulus);
+}
+
+template <int Dim>
+void BondNetwork<Dim>::set_stiffness(BondStiffness stiffness) {
+    stiffness_ = std::move(stiffness);
+    fast_ = BondKernel<Dim>(bonds_, stiffness_);
+
+    const std::size_t n = bonds_.X.size();
+    std::vector<double> mass(n * Dim);
+    for (std::size_t k = 0; k < mass.size(); ++k) mass[k] = material_.density * bonds_.volume[k / Dim];
+    max_frequency_ = quern::max_frequency(mass, [&](const std::vector<double>& u, std::vector<double>& f) {
+        // [n * Dim] numbers and [n] vectors are the same memory: Vec<Dim> is Dim packed doubles.
+        static_assert(sizeof(Vec<Dim>) == Dim * sizeof(double));
+        add_linear_forces({reinterpret_cast<const Vec<Dim>*>(u.data()), n},
+                          {reinterpret_cast<Vec<Dim>*>(f.data()), n});
+    });
+}
+
+template <int Dim>
+void BondNetwork<Dim>::add_damping_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const {
+    if (material_.bond_damping > 0.0) fast_.add_viscous_forces(grain, material_.bond_damping, f);
+}
+
+template <int Dim>
+void BondNetwork<Dim>::add_linear_forces(std::span<const Vec<Dim>> u, std::span<Vec<Dim>> f) const {
+    fast_.add_linear_forces(bonds_.X, u, f);
+}
+
+template <int Dim>
+double BondNetwork<Dim>::elastic_energy(const GrainView<Dim>& grain) const {
+    double energy = 0.0;
+    for (int i = 0; i < bonds_.n_nodes(); ++i) {
+        double dilatation = 0.0;
+        for (const auto [j, b] : bonds_.family_of(i)) {
+            if (!is_alive(grain, b)) continue;
+            const double xi = bonds_.length[b], e = bond_vector(grain, i, j).norm() - xi;
+            energy += 0.25 * stiffness_.bond[b] * e * e;  // half of the bond's; its other end adds the rest
+            dilatation += bonds_.weight[b] * bonds_.volume[i] * bonds_.volume[j] * xi * e;
+        }
+        if (!stiffness_.node.empty()) energy += 0.5 * stiffness_.node[i] * dilatation * dilatation;
+    }
+    return std::pow(grain.scale, Dim) * energy;
+}
+
+template <int Dim>
+int BondNetwork<Dim>::break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const {
+    const double limit = grain.scale * (1.0 + material_.critical_stretch);
+    if (!std::isfinite(limit)) return 0;
+    int n_broken = 0;
+    for (int i = 0; i < bonds_.n_nodes(); ++i)
+        for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
+            const double longest = limit * bonds_.length[b];
+            if (alive[b] == 0 || (grain.x[bonds_.partner[b]] - grain.x[i]).squaredNorm() <= longest * longest)
+                continue;
+            alive[b] = 0;
+            ++n_broken;
+        }
+    return n_broken;
+}
+
+template <int Dim>
+void BondNetwork<Dim>::compute_damage(const GrainView<Dim>& grain, std::span<double> damage) const {
+    for (int i = 0; i < bonds_.n_nodes(); ++i) {
+        double whole = 0.0, broken = 0.0;
+        for (const auto [j, b] : bonds_.family_of(i)) {
+            whole += bonds_.volume[j];
+            if (!is_alive(grain, b)) broken += bonds_.volume[j];
+        }
+        damage[i] = broken / whole;
+    }
+}
+
+template <int Dim>
+void BondNetwork<Dim>::compute_stress(const GrainView<Dim>& grain, std::span<double> stress) const {
+    for (int i = 0; i < bonds_.n_nodes(); ++i) {
+        Mat<Dim> shape = Mat<Dim>::Zero(), stretched = Mat<Dim>::Zero();
+        for (const auto [j, b] : bonds_.family_of(i)) {
+            if (!is_alive(grain, b)) continue;
+            const Vec<Dim> weighted = bonds_.weight[b] * bonds_.volume[j] * (bonds_.X[j] - bonds_.X[i]);
+            shape += (bonds_.X[j] - bonds_.X[i]) * weighted.transpose();
+            stretched += bond_vector(grain, i, j) * weighted.transpose();
+        }
+        double* const out = stress.data() + static_cast<std::size_t>(i) * n_stress<Dim>;
+        std::fill_n(out, n_stress<Dim>, 0.0);
+        if (shape.determinant() <= 1e-6 * std::pow(shape.trace() / Dim, Dim)) continue;
+        const Mat<Dim> F = stretched * shape.inverse();
+        compute_cauchy_stress<Dim>(F, material_, out);
+    }
+}
+
+template class BondNetwork<2>;
+template class BondNetwork<3>;
+
+}  // namespace quern

@@ -1,0 +1,105 @@
+// What all models made of bonds have in common: everything but their stiffness.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "particles/bond_kernel.hpp"
+#include "particles/bonds.hpp"
+#include "particles/grain_view.hpp"
+#include "particles/material.hpp"
+
+namespace quern {
+
+/// How internal forces are evaluated: the fast kernel, or the formulas of the model as printed, for
+/// comparison.
+enum class Kernel { fast, reference };
+
+/// Base of the bond models, not for use by itself. A grain of scale s is evaluated at y/s:
+///
+///     F(s, y) = s^(Dim-1) F(1, y/s)      E = s^Dim E(1, y/s)      omega = omega(1)/s
+///
+/// All functions are const and may run on any number of threads at once; sizes are those of GrainView.
+/// Broken bonds leave the sums of extensions; m stays that of the reference state, so that the force remains
+/// minus the gradient of `elastic_energy` for every pattern of broken bonds.
+template <int Dim>
+class BondNetwork {
+  public:
+    /// f [n] += Kelvin-Voigt bond forces [N; 2D: N/m]: the elastic law with bond_damping * (d e/dt) in the
+    /// place of e, hence a stress of bond_damping * stiffness * strain rate, for all moduli. The factors of
+    /// the two ends enter as 1/m_i + 1/m_j: no net force or moment; none in rigid motion, rotation included;
+    /// the power is -2 bond_damping times the energy of the rates, never positive.
+    void add_damping_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;
+
+    /// f [n] += derivative of the internal forces at the reference state along u [n] [m], at scale 1.
+    void add_linear_forces(std::span<const Vec<Dim>> u, std::span<Vec<Dim>> f) const;
+
+    /// [J; 2D: J/m]
+    double elastic_energy(const GrainView<Dim>& grain) const;
+
+    /// Clears alive [n_bonds] where |y|/(s xi) - 1 > critical_stretch; never sets it. Number newly broken.
+    int break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const;
+
+    /// damage [n] = volume of the broken part of the family over that of the whole family, in [0, 1].
+    void compute_damage(const GrainView<Dim>& grain, std::span<double> damage) const;
+
+    /// stress [n * 4: xx, yy, xy, zz | n * 6: xx, yy, zz, xy, yz, xz] = Cauchy stress [Pa] of the non-local
+    /// deformation gradient over the intact bonds,
+    ///
+    ///     F = (sum w y (x) xi V_j) (sum w xi (x) xi V_j)^-1
+    ///
+    /// (Silling et al., J. Elasticity 88 (2007) 151, eq. 134). For output only: the force law is not this
+    /// one. Zero where the intact bonds no longer span space and so tell no gradient.
+    void compute_stress(const GrainView<Dim>& grain, std::span<double> stress) const;
+
+    /// Highest frequency [rad/s] of a free grain of scale 1, from above by at most 0.5 % (stable_step.hpp).
+    double max_frequency() const { return max_frequency_; }
+
+    int n_bonds() const { return bonds_.n_bonds(); }   ///< undirected
+    double horizon() const { return bonds_.horizon; }  ///< of scale 1 [m]
+    const Bonds<Dim>& bonds() const { return bonds_; }
+
+  protected:
+    BondNetwork(const Shape<Dim>& shape, const Material& material, Kernel kernel);
+
+    /// To be called once by the constructor of a model.
+    void set_stiffness(BondStiffness stiffness);
+
+    /// f [n] += what `density`(i, j, bond, y) [N/m^6; 2D: N/m^5] says of every directed bond, as a plain sum
+    /// over all families; y = current bond vector of scale 1.
+    template <class Density>
+    void add_reference_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f, Density&& density) const;
+
+    bool is_alive(const GrainView<Dim>& grain, int bond) const {
+        return grain.alive.empty() || grain.alive[bond] != 0;
+    }
+    Vec<Dim> bond_vector(const GrainView<Dim>& grain, int i, int j) const {
+        return (grain.x[j] - grain.x[i]) / grain.scale;
+    }
+
+    Material material_;
+    Kernel kernel_;
+    Bonds<Dim> bonds_;
+    BondKernel<Dim> fast_;
+
+  private:
+    BondStiffness stiffness_;
+    double max_frequency_ = 0.0;
+};
+
+template <int Dim>
+template <class Density>
+void BondNetwork<Dim>::add_reference_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f,
+                                            Density&& density) const {
+    const double back = std::pow(grain.scale, Dim - 1);
+    for (int i = 0; i < bonds_.n_nodes(); ++i)
+        for (const auto [j, b] : bonds_.family_of(i)) {
+            if (!is_alive(grain, b)) continue;
+            const Vec<Dim> y = bond_vector(grain, i, j);
+            f[i] += back * bonds_.volume[i] * bonds_.volume[j] * density(i, j, b, y.norm()) * y.normalized();
+        }
+}
+
+}  // namespace quern

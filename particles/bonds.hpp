@@ -1,0 +1,58 @@
+// The bonds of one shape: who is joined to whom, how strongly, and how full each family is.
+//
+// Built once for a shape and a material, then read only and shared by all grains of both.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "particles/material.hpp"
+#include "particles/shape.hpp"
+
+namespace quern {
+
+/// One member of a node's family.
+struct Neighbor {
+    int node;
+    int bond;  ///< index of the undirected bond to it
+};
+
+/// Reference bonds of a shape at scale 1. Nodes are joined when 0 < xi <= horizon = horizon_ratio dx.
+///
+///     w_ij    = influence(xi/horizon) lambda_ij                                 no unit
+///     m_i     = sum_j w_ij xi^2 V_j                                             [m^4 | m^5]
+///     lambda  = 1, or with SurfaceCorrection::volume  2 V0 / (Vf_i + Vf_j)
+///     Vf_i    = sum_j V_j, family volume; V0 that of a full family              [m^2 | m^3]
+///
+/// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method" (after Bobaru et al. 2017).
+/// Differs: V0 is the mean over the bulk families of the shape itself, so that a lattice has lambda = 1
+/// inside. Bulk: at least one horizon below the true surface, by Shape::surface. A shape too thin to have
+/// such a node falls back on the integrals over the ball.
+template <int Dim>
+struct Bonds {
+    double horizon = 0.0;             ///< [m]
+    std::vector<Vec<Dim>> X;          ///< [n] reference positions [m]
+    std::vector<double> volume;       ///< [n] nodal volumes V [m^2 | m^3]
+    std::vector<int> first;           ///< [n + 1] bonds first[i] .. first[i + 1] join i to partners j > i
+    std::vector<int> partner;         ///< [n_bonds] j, ascending within a row
+    std::vector<double> length;       ///< [n_bonds] xi [m]
+    std::vector<double> weight;       ///< [n_bonds] w, no unit
+    std::vector<int> family_first;    ///< [n + 1] rows of `family`
+    std::vector<Neighbor> family;     ///< [2 n_bonds] every bond at both of its ends
+    std::vector<double> moment;       ///< [n] m, the sum over the node's own family [m^4 | m^5]
+    double bulk_moment = 0.0;         ///< mean of m over the bulk families, lambda left out [m^4 | m^5]
+    double bulk_family_volume = 0.0;  ///< V0 [m^2 | m^3]
+
+    int n_nodes() const { return static_cast<int>(X.size()); }
+    int n_bonds() const { return static_cast<int>(partner.size()); }
+    std::span<const Neighbor> family_of(int i) const {
+        return {family.data() + family_first[i], family.data() + family_first[i + 1]};
+    }
+};
+
+/// Throws InputError when nodes coincide, when a node has fewer than Dim + 1 neighbours or all of them on one
+/// line (2D) or plane (3D): such a node could move without a force. Cost O(n) by a cell list.
+template <int Dim>
+Bonds<Dim> make_bonds(const Shape<Dim>& shape, const Material& material);
+
+}  // namespace quern

@@ -1,0 +1,159 @@
+// The command line: quern run | check | schema | render.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <new>
+
+#include "grid/error.hpp"
+#include "quern_version.hpp"
+#include "src/deck/read_deck.hpp"
+#include "src/results/render.hpp"
+#include "src/sim/run.hpp"
+
+namespace {
+
+using namespace quern;
+
+/// A run stopped by the user: what the shell reports for SIGINT.
+constexpr int interrupted_code = 130;
+
+struct Arguments {
+    std::string deck;
+    std::vector<std::string> overrides;
+    RunOptions run;
+    RenderOptions render;
+    bool markdown = false;
+};
+
+int report(std::string message, int code) {
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    fmt::print(stderr, "quern: error: {}\n", message);
+    return code;
+}
+
+int run(const Arguments& arguments) {
+    const Deck deck = read_deck(arguments.deck, arguments.overrides);
+    RunOptions options = arguments.run;
+    if (options.directory.empty()) {
+        options.directory =
+            (std::filesystem::path("out") / std::filesystem::path(arguments.deck).stem()).string();
+    }
+    options.progress_terminal = isatty(STDERR_FILENO) != 0;
+    Summary summary;
+    const RunOutcome outcome = run_deck(deck, options, &summary);
+    fmt::print("{}: {} grains, {} particles, {} bonds\n",
+               outcome == RunOutcome::done ? "done" : "interrupted", summary.n_grains, summary.n_particles,
+               summary.n_bonds);
+    fmt::print("steps            {} of {:.4g} s to t = {:.6g} s\n", summary.steps, summary.time_step,
+               summary.simulated_time);
+    fmt::print("wall time        {:.3f} s, {:.1f} ns per particle and step, {} threads\n",
+               summary.wall_seconds, summary.ns_per_particle_step, summary.threads);
+    fmt::print("energy residual  {:.2e} of the energy that changed hands\n", summary.residual_relative);
+    fmt::print("momentum error   {:.2e} linear, {:.2e} angular\n", summary.momentum_error_linear,
+               summary.momentum_error_angular);
+    for (const auto& [text, count] : summary.warnings)
+        fmt::print("warning          {} ({} times)\n", text, count);
+    fmt::print("results          {}\n", options.directory);
+    return outcome == RunOutcome::done ? 0 : interrupted_code;
+}
+
+int draw(const Arguments& arguments) {
+    for (const std::string& file : render(arguments.render)) fmt::print("{}\n", file);
+    return 0;
+}
+
+void add_overrides(CLI::App& command, Arguments& arguments) {
+    command
+        .add_option("--set", arguments.overrides,
+                    "Set a key of the deck, e.g. --set params.theta=45; repeatable")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+/// Declares all commands and returns what the chosen one does.
+int parse_and_run(int argc, char** argv) {
+    Arguments arguments;
+    CLI::App app(
+        "Quern simulates deformable grains: peridynamic particles that touch through a background grid.",
+        "quern");
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "quern " QUERN_VERSION);
+    app.footer("Exit codes: 0 done, 2 bad input, 3 simulation failed, 4 output failed, 130 interrupted.");
+
+    CLI::App& run_command = *app.add_subcommand("run", "Run a deck");
+    run_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
+    run_command
+        .add_option("-o,--output", arguments.run.directory, "Folder of the results; default: out/<deck>")
+        ->type_name("DIR");
+    run_command.add_option("--threads", arguments.run.threads, "Number of threads; default: all cores")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096));
+    add_overrides(run_command, arguments);
+
+    CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");
+    check_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
+    add_overrides(check_command, arguments);
+
+    CLI::App& schema_command = *app.add_subcommand("schema", "Print the JSON Schema of decks");
+    schema_command.add_flag("--markdown", arguments.markdown,
+                            "The reference of all keys as Markdown instead");
+
+    CLI::App& render_command = *app.add_subcommand("render", "Draw frames of a run");
+    render_command.add_option("directory", arguments.render.directory, "Folder of the results")
+        ->required()
+        ->type_name("DIR");
+    render_command.add_option("-o,--output", arguments.render.file, "Picture (.png)")
+        ->required()
+        ->type_name("FILE");
+    render_command
+        .add_option("--field", arguments.render.field,
+                    "speed, velocity_x, damage, grain, von_mises, pressure, stress_xx, principal_difference, "
+                    "displacement...")
+        ->type_name("NAME")
+        ->capture_default_str();
+    render_command.add_option("--frame", arguments.render.frame, "last, all, or a number from 0")
+        ->type_name("last|K|all")
+        ->capture_default_str();
+
+    for (CLI::App* command : app.get_subcommands({}))
+        command->set_version_flag("--version", "quern " QUERN_VERSION);
+
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error);
+        return report(std::string(error.what()) + " (quern --help)", InputError::exit_code);
+    }
+    if (run_command.parsed()) return run(arguments);
+    if (render_command.parsed()) return draw(arguments);
+    if (check_command.parsed()) {
+        fmt::print("{}", resolved_yaml(read_deck(arguments.deck, arguments.overrides)));
+    } else {
+        fmt::print("{}", arguments.markdown ? deck_reference() : deck_schema());
+    }
+    return std::fflush(stdout) == 0 ? 0 : report("cannot write to standard output", OutputError::exit_code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return parse_and_run(argc, argv);
+    } catch (const InputError& error) {
+        return report(error.what(), InputError::exit_code);
+    } catch (const SimulationError& error) {
+        return report(error.what(), SimulationError::exit_code);
+    } catch (const OutputError& error) {
+        return report(error.what(), OutputError::exit_code);
+    } catch (const std::filesystem::filesystem_error& error) {
+        return report(error.what(), OutputError::exit_code);
+    } catch (const std::bad_alloc&) {
+        return report("out of memory", SimulationError::exit_code);
+    } catch (const std::exception& error) {
+        return report(error.what(), SimulationError::exit_code);
+    }
+}

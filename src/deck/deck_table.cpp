@@ -1,0 +1,477 @@
+// Every key of the deck: name, unit, range, description. Reader, writer, schema and reference follow from
+// here.
+#include "src/deck/deck_input.hpp"
+#include "src/deck/names.hpp"
+
+namespace quern {
+namespace {
+
+constexpr Range at_least(double low) {
+    return {low, no_limit, false, false, false};
+}
+constexpr Range fraction{0.0, 1.0, true, false, false};  // (0, 1]
+constexpr Range or_infinite{0.0, no_limit, true, false, true};
+const std::vector<std::string> in_time = {"t"}, in_place = {"x", "y", "z"}, in_all = {"x", "y", "z", "t"};
+
+Table<TimeDeck> time_table() {
+    using T = TimeDeck;
+    Table<T> t;
+    t.number("end", &T::end, "s", positive, "Simulated time").require();
+    t.number_or("step", &T::step, "auto", "s", positive, "Time step; auto: safety times the stable step");
+    t.number("safety", &T::safety, "", fraction, "Automatic step as a fraction of 2 / highest frequency");
+    t.finish = [](T& time, const Cursor& at, const Context&) { time.place = at.place(); };
+    return t;
+}
+
+Table<MaterialInput> material_table() {
+    using T = MaterialInput;
+    Table<T> t;
+    t.word("model", &T::model, {"lps", "bond_based"},
+           "Internal force: linear peridynamic solid, or bond-based");
+    t.word("plane", &T::plane, {"strain", "stress"}, "Plane strain or plane stress").in_dimension(2);
+    t.number("density", &T::density, "kg/m^3", positive, "Mass per volume").require();
+    t.number("bulk_modulus", &T::bulk, "Pa", positive, "K; exactly two of the four moduli");
+    t.number("shear_modulus", &T::shear, "Pa", positive, "G");
+    t.number("young_modulus", &T::young, "Pa", positive, "E");
+    t.number("poisson_ratio", &T::poisson, "", {-1.0, 0.5, true, true, false}, "nu");
+    t.number("horizon_ratio", &T::horizon_ratio, "", at_least(1.5), "Horizon over particle spacing");
+    t.word("influence", &T::influence, {"constant", "inverse", "conical", "gaussian"},
+           "Weight of a bond: 1, 1/r, 1 - r or exp(-(2 r)^2), r = length / horizon");
+    t.word("calibration", &T::calibration, {"none", "discrete"},
+           "Constants of the continuum, or of the sums over the actual neighbours");
+    t.word("surface_correction", &T::surface_correction, {"none", "volume"},
+           "Stiffen bonds near the surface by 2 V0 / (V_i + V_j)");
+    t.number("bond_damping", &T::bond_damping, "s", not_negative, "Kelvin-Voigt time of the bonds");
+    t.number("critical_stretch", &T::critical_stretch, "", or_infinite,
+             "Bonds break above it, in tension; .inf: never");
+    t.finish = finish_material;
+    return t;
+}
+
+Table<ShapeDeck> shape_table() {
+    using T = ShapeDeck;
+    Table<T> t;
+    t.type_of = [](const T& shape) { return shape_types()[static_cast<std::size_t>(shape.kind)]; };
+    t.word("type", &T::kind, shape_types(),
+           "disk, rectangle, regular_polygon and polygon in 2D; sphere and box in 3D; mesh in both")
+        .require();
+    t.word("filling", &T::filling, {"lattice", "rings", "mesh"},
+           "Square lattice, concentric rings or shells (disk, sphere), or a mesh by gmsh")
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+    t.number("radius", &T::radius, "m", positive, "Radius; of the corners for a regular polygon")
+        .require()
+        .only_for({"disk", "regular_polygon", "sphere"});
+    t.integer("sides", &T::sides, {3, 1000, false, false, false}, "Number of sides")
+        .require()
+        .only_for({"regular_polygon"});
+    t.vector("size", &T::size, "m", positive, "Edge lengths").require().only_for({"rectangle", "box"});
+    const Key points{.name = "vertices", .form = Form::points, .unit = "m", .about = "Corners in order"};
+    t.add(
+         points,
+         [points](T& shape, const Cursor& at, const Context& now) {
+             if (at.node().kind != Node::Kind::list || at.node().items.size() < 3) {
+                 const std::size_t n = at.node().items.size();
+                 const bool list = at.node().kind == Node::Kind::list;
+                 throw InputError(at.where(), list ? fmt::format("{} points", n) : at.node().description(),
+                                  points.expectation(2));
+             }
+             Key point = points;
+             point.form = Form::pair;
+             for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                 const Cursor entry = at.entry(i);
+                 check_size(entry, 2, point, 2);
+                 Key coordinate = point;
+                 coordinate.form = Form::number;
+                 shape.vertices.push_back({read_number(entry.entry(0), now, coordinate),
+                                           read_number(entry.entry(1), now, coordinate)});
+             }
+         },
+         [](const T& shape, int) {
+             std::string text;
+             for (const auto& [x, y] : shape.vertices) {
+                 text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", number_text(x), number_text(y));
+             }
+             return text.empty() ? text : fmt::format("[{}]", text);
+         })
+        .require()
+        .only_for({"polygon"});
+    t.text("file", &T::file, "Gmsh file (.msh), relative to the deck").require().only_for({"mesh"});
+    t.number("unit", &T::unit, "m", positive, "Length of one unit of the file").only_for({"mesh"});
+    t.number("spacing", &T::spacing, "m", positive, "Wanted distance between particles")
+        .require()
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+    t.finish = finish_shape;
+    return t;
+}
+
+Table<ArrayInput> array_table() {
+    using T = ArrayInput;
+    Table<T> t;
+    const Key counts{
+        .name = "counts", .form = Form::counts, .range = at_least(1), .about = "Grains along each axis"};
+    t.add(
+         counts,
+         [counts](T& array, const Cursor& at, const Context& now) {
+             check_size(at, static_cast<std::size_t>(now.dimension), counts, now.dimension);
+             Key count = counts;
+             count.form = Form::integer;
+             for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                 array.counts[i] = read_integer(at.entry(i), now, count);
+             }
+         },
+         [](const T& array, int dimension) {
+             return ids_text({array.counts.begin(), array.counts.begin() + dimension});
+         })
+        .require();
+    t.vector("origin", &T::origin, "m", any_number, "Centre of the first grain").require();
+    t.vector("step", &T::step, "m", any_number, "Distance between neighbours along each axis").require();
+    t.number("jitter", &T::jitter, "", {0.0, 0.5, false, false, false},
+             "Largest random displacement as a fraction of the step");
+    const Key scale{
+        .name = "scale", .form = Form::pair, .range = positive, .about = "Random scale: [least, largest]"};
+    t.add(
+        scale,
+        [scale](T& array, const Cursor& at, const Context& now) {
+            check_size(at, 2, scale, now.dimension);
+            Key bound = scale;
+            bound.form = Form::number;
+            array.scale = {read_number(at.entry(0), now, bound), read_number(at.entry(1), now, bound)};
+            if (array.scale[0] <= array.scale[1]) return;
+            throw InputError(at.where(), fmt::format("[{}, {}]", array.scale[0], array.scale[1]),
+                             "the least first");
+        },
+        [](const T& array, int) {
+            return vector_text({array.scale[0], array.scale[1], 0.0}, 2);
+        });
+    t.integer("seed", &T::seed, not_negative, "Of the random numbers");
+    return t;
+}
+
+void finish_grain(GrainInput& grain, const Cursor& at, const Context& now) {
+    grain.place = at.place();
+    grain.has_position = at.has("position");
+    const int n_ways = static_cast<int>(grain.has_position) + (grain.file ? 1 : 0) + (grain.array ? 1 : 0);
+    if (n_ways != 1) {
+        throw InputError(at.where(), n_ways == 0 ? "none of position, file, array" : "more than one of them",
+                         "exactly one of position, file, array");
+    }
+    if (grain.array && at.has("scale")) {
+        throw InputError(at.where("scale"), "scale beside array", "array.scale: [least, largest]");
+    }
+    if (grain.file) grain.file = (now.folder / *grain.file).lexically_normal().string();
+    for (const char* name : {"shape", "material"}) {
+        if (grain.file || at.has(name)) continue;
+        throw InputError(at.where(), fmt::format("no {}", name), fmt::format("the name of a {}", name));
+    }
+}
+
+Table<GrainInput> grain_table() {
+    using T = GrainInput;
+    Table<T> t;
+    t.text("shape", &T::shape, "Name of a shape; may come from the file's column");
+    t.text("material", &T::material, "Name of a material; may come from the file's column");
+    t.number("scale", &T::scale, "", positive, "Size relative to the shape");
+    t.vector("position", &T::position, "m", any_number, "Centre of mass; or give file or array");
+    t.turn("angle", &T::angle, "rad", "Rotation about z; rotation vector in 3D");
+    t.vector("velocity", &T::velocity, "m/s", any_number, "Initial velocity");
+    t.turn("spin", &T::spin, "rad/s", "Initial angular velocity");
+    const Key file{
+        .name = "file", .form = Form::text, .about = "CSV with a grain a row, relative to the deck"};
+    t.add(
+        file,
+        [file](T& grain, const Cursor& at, const Context& now) { grain.file = read_text(at, now, file); },
+        [](const T& grain, int) { return grain.file ? quoted(*grain.file) : std::string(); });
+    t.section("array", &T::array, array_table(), "Grains in rows and columns");
+    t.finish = finish_grain;
+    return t;
+}
+
+Table<GridDeck> grid_table() {
+    using T = GridDeck;
+    Table<T> t;
+    t.vector("origin", &T::origin, "m", any_number, "Lower corner of the box");
+    t.vector("extent", &T::extent, "m", positive, "Edge lengths of the box; rounded up to whole cells")
+        .require();
+    t.number("spacing", &T::spacing, "m", positive, "Cell size").require();
+    const Key axes{
+        .name = "periodic", .form = Form::axes, .words = {"x", "y", "z"}, .about = "Axes that repeat"};
+    t.add(
+        axes,
+        [axes](T& grid, const Cursor& at, const Context& now) {
+            check_list(at);
+            Key axis = axes;
+            axis.form = Form::word;
+            axis.words.resize(static_cast<std::size_t>(now.dimension));
+            for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                grid.periodic[read_word(at.entry(i), now, axis)] = true;
+            }
+        },
+        [axes](const T& grid, int dimension) {
+            std::vector<std::string> names;
+            for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+                if (grid.periodic[i]) names.push_back(axes.words[i]);
+            }
+            return fmt::format("[{}]", join(names));
+        });
+    t.finish = finish_grid;
+    return t;
+}
+
+void finish_wall(WallInput& wall, const Cursor& at, const Context& now) {
+    wall.place = at.place();
+    const bool by_plane = at.has("point") || at.has("normal") || at.has("name");
+    if (wall.side.has_value() == by_plane) {
+        throw InputError(at.where(),
+                         by_plane ? "side beside name, point or normal" : "neither side nor point",
+                         "either side, or name, point and normal");
+    }
+    if (wall.side) {
+        wall.name = wall_sides[*wall.side];
+        if (static_cast<int>(*wall.side / 2) < now.dimension) return;
+        throw InputError(at.where("side"), "'" + wall.name + "'", "one of x-, x+, y-, y+", "the deck is 2D");
+    }
+    for (const char* name : {"name", "point", "normal"}) {
+        if (!at.has(name)) throw InputError(at.where(), fmt::format("no {}", name), "name, point and normal");
+    }
+    if (std::find(wall_sides.begin(), wall_sides.end(), wall.name) != wall_sides.end()) {
+        throw InputError(at.where("name"), "'" + wall.name + "'", "a name that is no side of the grid");
+    }
+    const double length = std::hypot(wall.normal[0], wall.normal[1], wall.normal[2]);
+    if (length == 0.0)
+        throw InputError(at.where("normal"), "a vector of length 0", "the direction of the normal");
+    // Within round-off of 1 it stays, so that a resolved deck reads back to the same bits.
+    if (std::abs(length - 1.0) < 1e-14) return;
+    for (double& component : wall.normal) component /= length;
+}
+
+Table<WallInput> wall_table() {
+    using T = WallInput;
+    Table<T> t;
+    const Key side{.name = "side",
+                   .form = Form::word,
+                   .words = wall_sides,
+                   .about = "Side of the grid box, normal inward; or give name, point and normal"};
+    t.add(
+        side, [side](T& wall, const Cursor& at, const Context& now) { wall.side = read_word(at, now, side); },
+        [](const T& wall, int) { return wall.side ? wall_sides[*wall.side] : std::string(); });
+    const Key name{.name = "name", .form = Form::text, .about = "Name in messages and results"};
+    t.add(
+        name, [name](T& wall, const Cursor& at, const Context& now) { wall.name = read_text(at, now, name); },
+        [](const T& wall, int) {
+            return wall.side || wall.name.empty() ? std::string() : quoted(wall.name);
+        });
+    const auto plane = [&t](const char* key_name, Numbers3 T::*member, const char* unit, const char* about) {
+        const Key key{.name = key_name, .form = Form::vector, .unit = unit, .about = about};
+        t.add(
+            key,
+            [=](T& wall, const Cursor& at, const Context& now) { wall.*member = read_vector(at, now, key); },
+            [=](const T& wall, int dimension) {
+                return wall.side || wall.name.empty() ? std::string() : vector_text(wall.*member, dimension);
+            });
+    };
+    plane("point", &T::point, "m", "A point of the plane");
+    plane("normal", &T::normal, "", "Towards the grains; of any length");
+    t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient against all grains");
+    t.formulas("velocity", &T::velocity, "m/s", in_time, "Velocity of the wall; left out: at rest");
+    t.finish = finish_wall;
+    return t;
+}
+
+Table<FrictionPair> pair_table() {
+    using T = FrictionPair;
+    Table<T> t;
+    const Key between{.name = "between", .form = Form::names, .about = "Two materials, or one of them twice"};
+    t.add(
+         between,
+         [between](T& pair, const Cursor& at, const Context& now) {
+             check_size(at, 2, between, now.dimension);
+             Key name = between;
+             name.form = Form::text;
+             pair.first = read_text(at.entry(0), now, name);
+             pair.second = read_text(at.entry(1), now, name);
+         },
+         [](const T& pair, int) { return fmt::format("[{}, {}]", quoted(pair.first), quoted(pair.second)); })
+        .require();
+    t.number("friction", &T::value, "", not_negative, "Coulomb coefficient between them").require();
+    return t;
+}
+
+Table<ContactDeck> contact_table() {
+    using T = ContactDeck;
+    Table<T> t;
+    t.word("rule", &T::rule, {"none", "pair", "seed"},
+           "No contact, pairs of grains on a node, or the seed rule");
+    t.word("coupling", &T::coupling, {"impulse", "flip"}, "How nodal changes reach the particles");
+    t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient between grains");
+    t.list("pairs", &T::pairs, pair_table(), "Friction between particular materials");
+    t.number("interior_weight", &T::interior_weight, "", fraction,
+             "Weight of interior particles in an impulse");
+    t.integer("max_sweeps", &T::max_sweeps, {1, 10000, false, false, false},
+              "Sweeps over the contacts, at most");
+    t.number("tolerance", &T::tolerance, "", {0.0, 1.0, true, true, false},
+             "Sweeps end when impulses change by less than this part");
+    t.flag("tile", &T::tile, "Gap at the closest approach of two profiles; false: from mean positions");
+    t.flag("curvature", &T::curvature, "Profiles know the curvature of the surface");
+    t.flag("rotation", &T::rotation, "Impulses act at one point and turn what they meet");
+    t.flag("gap_test", &T::gap_test, "Grains may approach as far as there is a gap");
+    t.flag("exact_mass", &T::exact_mass, "Exact inverse mass of the impulse map; false: nodal mass");
+    t.finish = [](T& contact, const Cursor& at, const Context&) { contact.place = at.place(); };
+    return t;
+}
+
+Table<DampingInput> damping_table() {
+    Table<DampingInput> t;
+    t.number("mass", &DampingInput::mass, "1/s", not_negative, "Force -mass m v on every particle");
+    return t;
+}
+
+/// `grains`: all, or a list of numbers; an empty list stands for all.
+template <class T>
+void add_ids(Table<T>& t, const char* name, std::type_identity_t<std::vector<int> T::*> member,
+             const char* about) {
+    const Key key{.name = name, .form = Form::ids, .range = not_negative, .about = about};
+    t.add(
+        key,
+        [=](T& target, const Cursor& at, const Context& now) {
+            if (says(at, now, "all")) return;
+            if (at.node().kind != Node::Kind::list || at.node().items.empty()) {
+                const bool list = at.node().kind == Node::Kind::list;
+                throw InputError(at.where(), list ? "an empty list" : at.node().description(),
+                                 key.expectation(2));
+            }
+            Key id = key;
+            id.form = Form::integer;
+            for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                (target.*member).push_back(read_integer(at.entry(i), now, id));
+            }
+        },
+        [=](const T& target, int) { return (target.*member).empty() ? "all" : ids_text(target.*member); });
+}
+
+Table<LoadInput> load_table() {
+    using T = LoadInput;
+    Table<T> t;
+    add_ids(t, "grains", &T::grains, "Grains it acts on");
+    t.formula("region", &T::region, in_place, "Acts where this is not 0, by the place at t = 0");
+    t.formulas("acceleration", &T::acceleration, "m/s^2", in_all, "Force per mass; or give force_density");
+    t.formulas("force_density", &T::force_density, "N/m^3", in_all, "Force per volume");
+    t.finish = [](T& load, const Cursor& at, const Context&) {
+        load.place = at.place();
+        if (load.acceleration.empty() == load.force_density.empty()) {
+            throw InputError(at.where(), load.acceleration.empty() ? "neither" : "both",
+                             "exactly one of acceleration, force_density");
+        }
+        load.per_mass = !load.acceleration.empty();
+        load.value = load.per_mass ? load.acceleration : load.force_density;
+    };
+    return t;
+}
+
+Table<ConstraintDeck> constraint_table() {
+    using T = ConstraintDeck;
+    Table<T> t;
+    add_ids(t, "grains", &T::grains, "Grains it holds");
+    t.formula("region", &T::region, in_place, "Holds particles where this is not 0, by the place at t = 0");
+    const Key velocity{.name = "velocity",
+                       .form = Form::formulas,
+                       .unit = "m/s",
+                       .words = in_all,
+                       .about = "Prescribed velocity per axis; free: not held"};
+    t.add(
+         velocity,
+         [velocity](T& constraint, const Cursor& at, const Context& now) {
+             check_size(at, static_cast<std::size_t>(now.dimension), velocity, now.dimension);
+             bool any = false;
+             for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+                 const Cursor entry = at.entry(i);
+                 if (says(entry, now, "free")) continue;
+                 constraint.velocity[i] = read_formula(entry, now, velocity);
+                 any = true;
+             }
+             if (!any) throw InputError(at.where(), "free on every axis", "a velocity on one axis at least");
+         },
+         [](const T& constraint, int dimension) {
+             std::string text;
+             for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+                 const std::optional<Expression>& value = constraint.velocity[i];
+                 text += (i > 0 ? ", " : "") + (value ? formula_text(*value) : std::string("free"));
+             }
+             return fmt::format("[{}]", text);
+         })
+        .require();
+    t.finish = [](T& constraint, const Cursor& at, const Context&) { constraint.place = at.place(); };
+    return t;
+}
+
+Table<PrepareDeck> prepare_table() {
+    using T = PrepareDeck;
+    Table<T> t;
+    t.number("duration", &T::duration, "s", not_negative, "Relaxation before the clock starts");
+    t.vector("gravity", &T::gravity, "m/s^2", any_number, "Meanwhile; left out: as in the run");
+    t.number("mass_damping", &T::mass_damping, "1/s", not_negative, "Meanwhile: force -mass_damping m v");
+    t.number("friction", &T::friction, "", not_negative,
+             "Meanwhile, of all contacts; left out: as in the run");
+    return t;
+}
+
+Table<OutputDeck> output_table() {
+    using T = OutputDeck;
+    Table<T> t;
+    t.number_or("interval", &T::interval, "auto", "s", positive, "Between frames; auto: 100 frames");
+    t.number_or("history_interval", &T::history_interval, "auto", "s", positive,
+                "Between rows of history.csv and grains.csv; auto: 1000 rows");
+    add_ids(t, "track", &T::track, "Grains in grains.csv");
+    // Unlike loads, an output tracks none by default, and says so with an empty list.
+    Field<T>& track = t.fields.back();
+    const auto read_ids = track.read;
+    track.read = [read_ids](T& output, const Cursor& at, const Context& now) {
+        if (at.node().kind == Node::Kind::list && at.node().items.empty()) return;
+        read_ids(output, at, now);
+        output.track_all = output.track.empty();
+    };
+    track.write = [](const T& output, int) { return output.track_all ? "all" : ids_text(output.track); };
+    t.flag("vtp", &T::vtp, "Also a series of .vtp files");
+    t.finish = [](T& output, const Cursor& at, const Context&) { output.place = at.place(); };
+    return t;
+}
+
+Table<DeckInput> make_deck_table() {
+    using T = DeckInput;
+    Table<T> t;
+    t.text("title", &T::title, "What the deck shows");
+    t.integer("dimension", &T::dimension, {2, 3, false, false, false}, "2 or 3");
+    t.add(
+        {.name = "params",
+         .form = Form::named,
+         .about = "Numbers, quantities, texts and formulas for use as `${name}` below"},
+        [](T&, const Cursor&, const Context&) {}, [](const T&, int) { return std::string(); });
+    t.section("time", &T::time, time_table(), "How long and in which steps").require();
+    t.vector("gravity", &T::gravity, "m/s^2", any_number, "Acceleration of every particle");
+    t.named("materials", &T::materials, material_table(), "Materials by name").require();
+    t.named("shapes", &T::shapes, shape_table(), "Reference shapes by name").require();
+    t.section("grid", &T::grid, grid_table(), "Box and cells of the background grid").require();
+    t.list("walls", &T::walls, wall_table(), "Rigid planes");
+    t.section("contact", &T::contact, contact_table(), "What happens between grains");
+    t.section("damping", &T::damping, damping_table(), "Artificial damping");
+    t.list("loads", &T::loads, load_table(), "Body forces");
+    t.list("constraints", &T::constraints, constraint_table(), "Prescribed velocities of particles");
+    t.section("prepare", &T::prepare, prepare_table(), "Relaxation before the run");
+    t.section("output", &T::output, output_table(), "What is written, and how often");
+    t.list("grains", &T::grains, grain_table(), "Grains, numbered from 0 in this order").require();
+    return t;
+}
+
+}  // namespace
+
+const std::vector<std::string>& shape_types() {
+    static const std::vector<std::string> types = {
+        "disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "mesh"};
+    return types;
+}
+
+const Table<DeckInput>& deck_table() {
+    static const Table<DeckInput> table = make_deck_table();
+    return table;
+}
+
+}  // namespace quern

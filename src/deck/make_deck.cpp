@@ -1,0 +1,154 @@
+// From sections to the deck: walls on the box, grains one by one, and the checks that see more than one
+// section.
+#include <algorithm>
+
+#include "src/deck/deck_input.hpp"
+#include "src/deck/names.hpp"
+
+namespace quern {
+namespace {
+
+template <class Named>
+std::vector<std::string> names_of(const std::vector<Named>& things) {
+    std::vector<std::string> names;
+    for (const Named& thing : things) names.push_back(thing.name);
+    return names;
+}
+
+void check_name(const std::string& name, const std::vector<std::string>& names, const std::string& where,
+                const char* kind) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) return;
+    throw InputError(where, fmt::format("the unknown {} '{}'", kind, name),
+                     names.empty() ? fmt::format("a {}", kind) : "one of " + join(names),
+                     did_you_mean(name, names));
+}
+
+std::string place_text(Place place, const char* key) {
+    if (!place.key.empty()) place.key += ".";
+    place.key += key;
+    return place.text();
+}
+
+/// Distance of a point from a wall, positive on the side of the grains.
+double distance(const WallDeck& wall, const Numbers3& point) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) sum += (point[i] - wall.point[i]) * wall.normal[i];
+    return sum;
+}
+
+WallDeck place_wall(WallInput wall, const GridDeck& grid, int dimension) {
+    if (!wall.side) return wall;
+    const std::size_t axis = *wall.side / 2;
+    const bool upper = *wall.side % 2 == 1;
+    if (grid.periodic[axis]) {
+        throw InputError(place_text(wall.place, "side"), "a wall on a periodic axis",
+                         "a side of another axis, or an axis that is not periodic");
+    }
+    for (std::size_t i = 0; i < static_cast<std::size_t>(dimension); ++i) {
+        wall.point[i] = grid.origin[i] + 0.5 * grid.extent[i];
+    }
+    wall.point[axis] = grid.origin[axis] + (upper ? grid.extent[axis] : 0.0);
+    wall.normal = {};
+    wall.normal[axis] = upper ? -1.0 : 1.0;
+    return wall;
+}
+
+void check_wall(const WallDeck& wall, const GridDeck& grid, int dimension) {
+    double farthest = -no_limit;
+    for (int corner = 0; corner < 1 << dimension; ++corner) {
+        Numbers3 point = grid.origin;
+        for (std::size_t i = 0; i < 3; ++i) point[i] += (corner >> i & 1) * grid.extent[i];
+        farthest = std::max(farthest, distance(wall, point));
+    }
+    if (farthest > 0.0) return;
+    throw InputError(place_text(wall.place, "normal"), "a wall with the whole grid box behind it",
+                     "a normal that points to the grains", "turn it round?");
+}
+
+void check_grain(const GrainDeck& grain, const Deck& deck, std::size_t number) {
+    check_name(grain.shape, names_of(deck.shapes), place_text(grain.place, "shape"), "shape");
+    check_name(grain.material, names_of(deck.materials), place_text(grain.place, "material"), "material");
+    const std::string who =
+        fmt::format("grain {} at {}", number, vector_text(grain.position, deck.dimension));
+    for (std::size_t i = 0; i < static_cast<std::size_t>(deck.dimension); ++i) {
+        const double low = deck.grid.origin[i], high = low + deck.grid.extent[i];
+        if (grain.position[i] >= low && grain.position[i] <= high) continue;
+        throw InputError(place_text(grain.place, "position"), who,
+                         fmt::format("a centre inside the grid box, {} in [{}, {}]", "xyz"[i], low, high));
+    }
+    for (const WallDeck& wall : deck.walls) {
+        if (distance(wall, grain.position) > 0.0) continue;
+        throw InputError(place_text(grain.place, "position"), who + ", behind wall " + wall.name,
+                         "a centre on the side that the wall's normal points to");
+    }
+}
+
+void check_pairs(const Deck& deck, const Cursor& at) {
+    const std::vector<std::string> materials = names_of(deck.materials);
+    for (std::size_t i = 0; i < deck.contact.pairs.size(); ++i) {
+        const FrictionPair& pair = deck.contact.pairs[i];
+        const std::string where = at.where(fmt::format("contact.pairs.{}.between", i));
+        check_name(pair.first, materials, where, "material");
+        check_name(pair.second, materials, where, "material");
+        for (std::size_t j = 0; j < i; ++j) {
+            const FrictionPair& other = deck.contact.pairs[j];
+            const bool same = (pair.first == other.first && pair.second == other.second) ||
+                              (pair.first == other.second && pair.second == other.first);
+            if (same) throw InputError(where, "a pair of materials a second time", "each pair once");
+        }
+    }
+}
+
+void check_ids(const std::vector<int>& ids, std::size_t n_grains, const std::string& where) {
+    for (const int id : ids) {
+        if (static_cast<std::size_t>(id) < n_grains) continue;
+        throw InputError(where, fmt::format("grain {}", id),
+                         fmt::format("a number from 0 to {}", n_grains - 1));
+    }
+}
+
+void check_walls(const Deck& deck) {
+    for (std::size_t i = 0; i < deck.walls.size(); ++i) {
+        check_wall(deck.walls[i], deck.grid, deck.dimension);
+        for (std::size_t j = 0; j < i; ++j) {
+            if (deck.walls[i].name != deck.walls[j].name) continue;
+            throw InputError(place_text(deck.walls[i].place, "name"),
+                             "wall " + deck.walls[i].name + " a second time", "each wall once");
+        }
+    }
+}
+
+}  // namespace
+
+Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
+    Deck deck;
+    deck.title = std::move(input.title);
+    deck.dimension = input.dimension;
+    deck.materials.assign(input.materials.begin(), input.materials.end());
+    deck.shapes = std::move(input.shapes);
+    deck.grid = input.grid;
+    for (WallInput& wall : input.walls)
+        deck.walls.push_back(place_wall(std::move(wall), deck.grid, deck.dimension));
+    deck.contact = std::move(input.contact);
+    deck.gravity = input.gravity;
+    deck.mass_damping = input.damping.mass;
+    deck.loads.assign(input.loads.begin(), input.loads.end());
+    deck.constraints = std::move(input.constraints);
+    deck.prepare = input.prepare;
+    deck.time = input.time;
+    deck.output = std::move(input.output);
+    deck.grains = expand_grains(input.grains, deck.shapes, now);
+
+    if (deck.grains.empty()) throw InputError(at.where("grains"), "an empty list", "one grain at least");
+    check_walls(deck);
+    check_pairs(deck, at);
+    for (std::size_t i = 0; i < deck.grains.size(); ++i) check_grain(deck.grains[i], deck, i);
+    const std::size_t n = deck.grains.size();
+    for (const LoadDeck& load : deck.loads) check_ids(load.grains, n, place_text(load.place, "grains"));
+    for (const ConstraintDeck& held : deck.constraints)
+        check_ids(held.grains, n, place_text(held.place, "grains"));
+    check_ids(deck.output.track, n, at.where("output.track"));
+    return deck;
+}
+
+}  // namespace quern

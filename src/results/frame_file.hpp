@@ -1,0 +1,54 @@
+// results.h5: particles over time, written frame by frame and read back.
+//
+//   /time [F]  /step [F]  /position [F, n, d]  /velocity [F, n, d]  /damage [F, n]  /stress [F, n, 4 | 6]
+//   /grain [n]  /volume [n]
+//
+// F frames, n particles, d = 2 or 3. One chunk holds one frame of at most 65536 particles, shuffled and
+// deflated. /time grows last, so a run that died while writing leaves its last frame uncounted.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/results/records.hpp"
+
+namespace quern {
+
+class FrameFileWriter {
+  public:
+    /// domain: lower then upper corner [m], 2 * dimension numbers, or empty where there is none.
+    FrameFileWriter(const std::string& path, int dimension, const std::string& title,
+                    const std::vector<double>& domain);
+    ~FrameFileWriter();
+
+    /// Appends and flushes. Frames must agree in dimension and number of particles; grain and volume are
+    /// those of the first. Throws OutputError with the system's reason.
+    void add(const Frame& frame);
+    void close();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+class FrameFileReader {
+  public:
+    /// Throws InputError where the file is missing, is not HDF5, or lacks what a run writes.
+    explicit FrameFileReader(const std::string& path);
+    ~FrameFileReader();
+
+    int dimension() const;
+    std::size_t n_frames() const;
+    std::size_t n_particles() const;
+    const std::string& title() const;
+    const std::vector<double>& domain() const;  ///< lower, upper corner [m]; empty where unknown
+    Frame read(std::size_t frame) const;        ///< frame < n_frames()
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace quern

@@ -1,0 +1,197 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include "grid/error.hpp"
+#include "quern_version.hpp"
+#include "src/results/frame_file.hpp"
+#include "src/results/hdf5_handle.hpp"
+#include "src/results/output_file.hpp"
+
+namespace quern {
+
+namespace {
+
+constexpr hsize_t particles_per_chunk = 1 << 16;
+constexpr hsize_t times_per_chunk = 256;
+constexpr unsigned deflate_level = 1;  // higher levels cost several times the time for a few percent
+
+const char* stress_components(int dimension) {
+    return dimension == 2 ? "xx, yy, xy, zz" : "xx, yy, zz, xy, yz, xz";
+}
+
+}  // namespace
+
+struct FrameFileWriter::Impl {
+    Impl(const std::string& path, int dimension) : path(path), dimension(dimension) {}
+
+    std::string path;
+    int dimension;
+    Hdf5Handle file;
+    Hdf5Handle time, step, position, velocity, damage, stress;
+    hsize_t n_frames = 0, n_particles = 0;
+
+    [[noreturn]] void fail(const std::string& deed) const {
+        throw OutputError(fmt::format("{}: cannot {}: {}", path, deed, hdf5_reason()));
+    }
+    Hdf5Handle checked(hid_t id, Hdf5Handle::Close close, const char* deed) const {
+        if (id < 0) fail(deed);
+        return {id, close};
+    }
+    void check(herr_t status, const char* deed) const {
+        if (status < 0) fail(deed);
+    }
+
+    void add_attribute(hid_t object, const char* name, const std::string& text) const {
+        const Hdf5Handle type = checked(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
+        check(H5Tset_size(type, H5T_VARIABLE), "make a type");
+        check(H5Tset_cset(type, H5T_CSET_UTF8), "make a type");
+        const Hdf5Handle space = checked(H5Screate(H5S_SCALAR), H5Sclose, "make a space");
+        const Hdf5Handle attribute = checked(H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT),
+                                             H5Aclose, "add an attribute");
+        const char* characters = text.c_str();
+        check(H5Awrite(attribute, type, &characters), "write an attribute");
+    }
+
+    void add_attribute(hid_t object, const char* name, const std::vector<double>& values) const {
+        const hsize_t n = values.size();
+        const Hdf5Handle space = checked(H5Screate_simple(1, &n, nullptr), H5Sclose, "make a space");
+        const Hdf5Handle attribute =
+            checked(H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                    "add an attribute");
+        check(H5Awrite(attribute, H5T_NATIVE_DOUBLE, values.data()), "write an attribute");
+    }
+
+    /// Unlimited along the first axis when it is 0.
+    Hdf5Handle add_dataset(const char* name, hid_t type, std::vector<hsize_t> shape, const char* unit,
+                           const std::string& description) const {
+        std::vector<hsize_t> limit = shape, chunk = shape;
+        if (shape[0] == 0) {
+            limit[0] = H5S_UNLIMITED;
+            chunk[0] = shape.size() == 1 ? times_per_chunk : 1;
+        }
+        hsize_t& particles = shape[0] == 0 && shape.size() > 1 ? chunk[1] : chunk[0];
+        particles = std::clamp<hsize_t>(particles, 1, particles_per_chunk);
+
+        const Hdf5Handle properties = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
+        check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "set the chunks");
+        check(H5Pset_shuffle(properties), "set the shuffle filter");
+        check(H5Pset_deflate(properties, deflate_level), "set the compression");
+        const Hdf5Handle space =
+            checked(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()), H5Sclose,
+                    "make a space");
+        Hdf5Handle dataset =
+            checked(H5Dcreate2(file, name, type, space, H5P_DEFAULT, properties, H5P_DEFAULT), H5Dclose,
+                    "add a dataset");
+        add_attribute(dataset, "units", unit);
+        add_attribute(dataset, "description", description);
+        return dataset;
+    }
+
+    void make_datasets(const Frame& first) {
+        n_particles = first.n();
+        const hsize_t n = n_particles, d = static_cast<hsize_t>(dimension);
+        const hid_t real = H5T_IEEE_F64LE;
+        time = add_dataset("time", real, {0}, "s", "time of each frame");
+        step = add_dataset("step", H5T_STD_I64LE, {0}, "1", "number of steps done before each frame");
+        position = add_dataset("position", real, {0, n, d}, "m", "current position");
+        velocity = add_dataset("velocity", real, {0, n, d}, "m/s", "velocity");
+        damage = add_dataset("damage", real, {0, n}, "1", "fraction of broken bonds, 0 intact, 1 all broken");
+        stress = add_dataset("stress", real, {0, n, d == 2 ? 4u : 6u}, "Pa",
+                             fmt::format("Cauchy stress {}, tension positive", stress_components(dimension)));
+        const Hdf5Handle grain =
+            add_dataset("grain", H5T_STD_I32LE, {n}, "1", "grain of each particle, from 0");
+        const Hdf5Handle volume = add_dataset("volume", real, {n}, d == 2 ? "m^2" : "m^3",
+                                              d == 2 ? "reference area" : "reference volume");
+        if (n == 0) return;
+        check(H5Dwrite(grain, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, first.grain.data()), "write");
+        check(H5Dwrite(volume, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, first.volume.data()),
+              "write");
+    }
+
+    void append(hid_t dataset, hid_t memory_type, const void* values) const {
+        std::array<hsize_t, 3> shape{}, start{}, count{};
+        const Hdf5Handle old = checked(H5Dget_space(dataset), H5Sclose, "read a space");
+        const int rank = H5Sget_simple_extent_dims(old, shape.data(), nullptr);
+        if (rank < 0) fail("read a shape");
+        count = shape;
+        count[0] = 1;
+        start[0] = n_frames;
+        shape[0] = n_frames + 1;
+        check(H5Dset_extent(dataset, shape.data()), "extend a dataset");
+        const Hdf5Handle space = checked(H5Dget_space(dataset), H5Sclose, "read a space");
+        check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
+              "select a frame");
+        const Hdf5Handle memory =
+            checked(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "make a space");
+        check(H5Dwrite(dataset, memory_type, memory, space, H5P_DEFAULT, values), "write");
+    }
+
+    void require_consistent(const Frame& frame) const {
+        const std::size_t n = frame.n(), d = static_cast<std::size_t>(dimension);
+        const bool fits = frame.dimension == dimension && (n_frames == 0 || n == n_particles) &&
+                          frame.position.size() == n * d && frame.velocity.size() == n * d &&
+                          frame.damage.size() == n && frame.volume.size() == n &&
+                          frame.stress.size() == n * (d == 2 ? 4 : 6);
+        if (!fits)
+            throw std::invalid_argument(
+                "FrameFileWriter: the arrays of a frame do not fit each other or the frames before");
+    }
+
+    void require_not_deleted() const {
+        void* descriptor = nullptr;
+        check(H5Fget_vfd_handle(file, H5P_DEFAULT, &descriptor), "inspect the file");
+        quern::require_not_deleted(path, *static_cast<int*>(descriptor));
+    }
+};
+
+FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const std::string& title,
+                                 const std::vector<double>& domain)
+    : impl_(new Impl(path, dimension)) {
+    silence_hdf5();
+    const Hdf5Handle access = impl_->checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
+    // Without locks a picture can be drawn from a run that is still going on.
+    impl_->check(H5Pset_file_locking(access, false, true), "set the file access");
+    impl_->file = impl_->checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
+                                 "create the file");
+    impl_->add_attribute(impl_->file, "format", "quern results 1");
+    impl_->add_attribute(impl_->file, "version", QUERN_VERSION);
+    impl_->add_attribute(impl_->file, "title", title);
+    if (!domain.empty()) impl_->add_attribute(impl_->file, "domain", domain);
+    impl_->check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), "write");
+}
+
+FrameFileWriter::~FrameFileWriter() = default;
+
+void FrameFileWriter::add(const Frame& frame) {
+    impl_->require_consistent(frame);
+    impl_->require_not_deleted();
+    if (impl_->n_frames == 0) impl_->make_datasets(frame);
+    const Impl& file = *impl_;
+    if (file.n_particles > 0) {
+        file.append(file.position, H5T_NATIVE_DOUBLE, frame.position.data());
+        file.append(file.velocity, H5T_NATIVE_DOUBLE, frame.velocity.data());
+        file.append(file.damage, H5T_NATIVE_DOUBLE, frame.damage.data());
+        file.append(file.stress, H5T_NATIVE_DOUBLE, frame.stress.data());
+    }
+    file.append(file.step, H5T_NATIVE_INT64, &frame.step);
+    file.append(file.time, H5T_NATIVE_DOUBLE, &frame.time);
+    file.check(H5Fflush(file.file, H5F_SCOPE_LOCAL), "write");
+    ++impl_->n_frames;
+}
+
+void FrameFileWriter::close() {
+    Impl& file = *impl_;
+    if (file.file < 0) return;
+    file.require_not_deleted();
+    bool closed = true;
+    for (Hdf5Handle* dataset :
+         {&file.time, &file.step, &file.position, &file.velocity, &file.damage, &file.stress})
+        closed = dataset->close() && closed;
+    closed = file.file.close() && closed;
+    if (!closed) file.fail("close the file");
+}
+
+}  // namespace quern

@@ -1,0 +1,39 @@
+// Particles as discs (2D) or shaded balls (3D), with all that a picture needs to be read.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "src/results/fields.hpp"
+
+namespace quern {
+
+struct PictureOptions {
+    int width = 1200, height = 900;  ///< [pixel]
+    std::string title = {};
+    Field field = {};
+    double low = 0.0, high = 1.0;     ///< of the colours; high > low
+    std::vector<double> region = {};  ///< shown: lower, then upper corner [m]
+    std::vector<double> domain = {};  ///< outlined: lower, then upper corner [m], or empty
+    int dimension = 2;
+};
+
+/// A camera for any number of frames of one run: same region, same colours.
+class ParticlePicture {
+  public:
+    explicit ParticlePicture(const PictureOptions& options);
+    ~ParticlePicture();
+
+    /// values: one a particle [n], coloured by; particles whose position is not a number are left out.
+    void write_png(const Frame& frame, const std::vector<double>& values, const std::string& file);
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Radius of the disc or ball that has the volume of the particle [m].
+double particle_radius(double volume, int dimension);
+
+}  // namespace quern

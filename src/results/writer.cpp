@@ -1,0 +1,130 @@
+#include "src/results/writer.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+#include "src/results/frame_file.hpp"
+#include "src/results/json.hpp"
+#include "src/results/output_file.hpp"
+#include "src/results/vtp_series.hpp"
+#include "src/results/xdmf.hpp"
+
+namespace quern {
+
+namespace {
+
+std::string make_history_header(int dimension) {
+    return std::string(
+               "time,kinetic,elastic,gravity,damping,friction,contact_loss,fracture,transfer_loss,external_"
+               "work,"
+               "residual,throughput,") +
+           (dimension == 2 ? "momentum_x,momentum_y,angular_momentum\n"
+                           : "momentum_x,momentum_y,momentum_z,"
+                             "angular_momentum_x,angular_momentum_y,angular_momentum_z\n");
+}
+
+std::string make_grain_header(int dimension) {
+    return dimension == 2 ? "time,grain,x,y,vx,vy,angle,omega,fx,fy\n"
+                          : "time,grain,x,y,z,vx,vy,vz,angle,omega,fx,fy,fz\n";
+}
+
+/// ",x,y" or ",x,y,z", each number as short as reads back to the same bits.
+std::string cells(const double (&vector)[3], int dimension) {
+    return dimension == 2 ? fmt::format(",{},{}", vector[0], vector[1])
+                          : fmt::format(",{},{},{}", vector[0], vector[1], vector[2]);
+}
+
+/// A directory that can be written to, without what would tell of another run.
+const std::string& make_run_directory(const WriterOptions& options) {
+    create_directory(options.directory);
+    for (const char* name : {"summary.json", "results.pvd"}) {
+        std::error_code error;
+        std::filesystem::remove(options.directory + "/" + name, error);
+        if (error) throw_output_error(options.directory + "/" + name, "remove the old file", error.value());
+    }
+    return options.directory;
+}
+
+}  // namespace
+
+struct ResultWriter::Files {
+    explicit Files(const WriterOptions& options)
+        : directory(make_run_directory(options)),
+          dimension(options.dimension),
+          log(directory + "/run.log"),
+          history(directory + "/history.csv"),
+          grains(directory + "/grains.csv"),
+          frames(directory + "/results.h5", dimension, options.title, options.domain),
+          xdmf(directory + "/results.xdmf", dimension) {
+        history.write(make_history_header(dimension));
+        grains.write(make_grain_header(dimension));
+        history.flush();
+        grains.flush();
+        if (options.vtp) vtp.emplace(directory);
+    }
+
+    std::string directory;
+    int dimension;
+    OutputFile log, history, grains;
+    FrameFileWriter frames;
+    XdmfFile xdmf;
+    std::optional<VtpSeries> vtp;
+};
+
+ResultWriter::ResultWriter(const WriterOptions& options) {
+    if (options.dimension != 2 && options.dimension != 3)
+        throw std::invalid_argument("ResultWriter: dimension is neither 2 nor 3");
+    if (!options.domain.empty() && options.domain.size() != 2 * static_cast<std::size_t>(options.dimension))
+        throw std::invalid_argument("ResultWriter: domain has not 2 * dimension numbers");
+    files_ = std::make_unique<Files>(options);
+}
+
+ResultWriter::~ResultWriter() = default;
+
+void ResultWriter::write_text(const std::string& file_name, const std::string& text) {
+    write_whole_file(files_->directory + "/" + file_name, text);
+}
+
+void ResultWriter::log(const std::string& line) {
+    files_->log.write(line + "\n");
+    files_->log.flush();
+}
+
+void ResultWriter::add_frame(const Frame& frame) {
+    Files& to = *files_;
+    to.frames.add(frame);
+    to.xdmf.add(frame.time, frame.n());
+    if (to.vtp) to.vtp->add(frame);
+    to.history.flush();
+    to.grains.flush();
+}
+
+void ResultWriter::add_history(const HistoryRow& row) {
+    const EnergyBudget& e = row.energy;
+    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
+                                   e.gravity, e.damping, e.friction, e.contact_loss, e.fracture,
+                                   e.transfer_loss, e.external_work, e.residual, e.throughput);
+    line += cells(row.momentum, files_->dimension);
+    line +=
+        files_->dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
+    files_->history.write(line + "\n");
+}
+
+void ResultWriter::add_grain(const GrainRow& row) {
+    const int d = files_->dimension;
+    files_->grains.write(fmt::format("{},{}{}{},{},{}{}\n", row.time, row.grain, cells(row.position, d),
+                                     cells(row.velocity, d), row.angle, row.omega, cells(row.force, d)));
+}
+
+void ResultWriter::finish(const Summary& summary) {
+    files_->history.flush();
+    files_->grains.flush();
+    files_->frames.close();
+    write_text("summary.json", make_summary_json(summary));
+    files_->log.flush();
+}
+
+}  // namespace quern

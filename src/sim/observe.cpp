@@ -1,0 +1,234 @@
+#include "src/sim/observe.hpp"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "grid/parallel.hpp"
+
+namespace quern {
+
+namespace {
+
+/// Velocity at the time of the positions: mean of those half a step around it.
+template <int Dim>
+Vec<Dim> velocity_now(const Scene<Dim>& scene, const StepContext<Dim>& now, int p) {
+    if (now.first) return scene.arrays.v_before[p];
+    return 0.5 * (scene.arrays.v_before[p] + scene.particles.v[p]);
+}
+
+template <int Dim>
+Particles<Dim> particles_now(const Scene<Dim>& scene, const StepContext<Dim>& now, const Grain<Dim>& grain) {
+    Particles<Dim> particles;
+    for (int p = grain.first; p < grain.first + grain.count; ++p) {
+        particles.x.push_back(scene.particles.x[p]);
+        particles.v.push_back(velocity_now(scene, now, p));
+        particles.mass.push_back(scene.particles.mass[p]);
+    }
+    return particles;
+}
+
+double about_z(const Spin<2>& s) {
+    return s[0];
+}
+double about_z(const Spin<3>& s) {
+    return s[2];
+}
+
+}  // namespace
+
+template <int Dim>
+typename Observer<Dim>::Momenta& Observer<Dim>::Momenta::operator+=(const Momenta& other) {
+    linear += other.linear;
+    angular += other.angular;
+    scale += other.scale;
+    angular_scale += other.angular_scale;
+    potential += other.potential;
+    return *this;
+}
+
+template <int Dim>
+typename Observer<Dim>::Momenta Observer<Dim>::momenta(const Scene<Dim>& scene) const {
+    return parallel::sum(static_cast<std::size_t>(scene.particles.size()), Momenta{}, [&](std::size_t p) {
+        const Vec<Dim> momentum = scene.particles.mass[p] * scene.particles.v[p];
+        Momenta m;
+        m.linear = momentum;
+        m.angular = moment(scene.particles.x[p], momentum);
+        m.scale = momentum.norm();
+        m.angular_scale = momentum.norm() * scene.particles.x[p].norm();
+        m.potential = -scene.particles.mass[p] * scene.gravity.dot(scene.particles.x[p] - scene.x_start[p]);
+        return m;
+    });
+}
+
+template <int Dim>
+void Observer<Dim>::start(const Scene<Dim>& scene, const StepContext<Dim>& now) {
+    const Momenta m = momenta(scene);
+    start_linear_ = m.linear - now.ledger.now.impulse;
+    start_angular_ = m.angular - now.ledger.now.moment;
+    start_energy_ = 0.0;
+    started_ = false;
+}
+
+template <int Dim>
+HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim>& now) {
+    const Momenta m = momenta(scene);
+    const auto& past = now.ledger.past;
+    const auto& here = now.ledger.now;
+    const double part = now.part_done();
+    HistoryRow row;
+    row.time = now.time;
+    EnergyBudget& e = row.energy;
+    const double contact = here.normal + here.friction + here.wall;
+    e.kinetic = now.ledger.kinetic + part * (contact + here.constraint - here.transfer);
+    e.elastic = scene.elastic_energy();
+    e.gravity = m.potential;
+    e.damping = 0.0 - past.damping - (now.first ? 0.0 : now.ledger.damping_half);
+    e.friction = 0.0 - past.friction - part * here.friction;
+    e.contact_loss = 0.0 - past.normal - part * here.normal;
+    e.fracture = past.fracture;
+    e.transfer_loss = past.transfer + part * here.transfer;
+    e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint +
+                      part * here.constraint + past.wall + part * here.wall;
+    const double stored = e.kinetic + e.elastic + e.gravity;
+    const double lost = e.damping + e.friction + e.contact_loss + e.fracture + e.transfer_loss;
+    const double total = stored + lost - e.external_work;
+    if (!started_) start_energy_ = total;
+    started_ = true;
+    e.residual = total - start_energy_;
+    throughput_ = std::max(throughput_, e.kinetic + e.elastic + std::abs(lost));
+    e.throughput = throughput_;
+    largest_residual_ = std::max(largest_residual_, std::abs(e.residual));
+
+    const Vec<Dim> missing = m.linear - start_linear_ - past.impulse - here.impulse;
+    const Spin<Dim> missing_angular = m.angular - start_angular_ - past.moment - here.moment;
+    momentum_error_ = std::max(momentum_error_, missing.norm());
+    angular_error_ = std::max(angular_error_, missing_angular.norm());
+    momentum_scale_ = std::max(momentum_scale_, m.scale);
+    angular_scale_ = std::max(angular_scale_, m.angular_scale);
+    for (int a = 0; a < Dim; ++a) row.momentum[a] = m.linear[a];
+    if constexpr (Dim == 2)
+        row.angular_momentum[2] = m.angular[0];
+    else
+        for (int a = 0; a < 3; ++a) row.angular_momentum[a] = m.angular[a];
+    return row;
+}
+
+template <int Dim>
+GrainTracker<Dim>::GrainTracker(const Scene<Dim>& scene, const Deck& deck) {
+    if (deck.output.track_all)
+        grains_ = scene.grain_of_id;
+    else
+        for (const int id : deck.output.track)
+            grains_.push_back(scene.grain_of_id[static_cast<std::size_t>(id)]);
+    for (const int g : grains_) {
+        angle_.push_back(deck.grains[scene.grains[g].id].angle[2]);
+        rotation_.push_back(best_fit_rotation<Dim>(scene.grains[g], scene.particles.x, scene.particles.mass));
+    }
+    omega_.assign(grains_.size(), 0.0);
+}
+
+template <int Dim>
+std::vector<GrainRow> GrainTracker<Dim>::rows(const Scene<Dim>& scene, StepContext<Dim>& now,
+                                              double elapsed) {
+    std::vector<GrainRow> rows;
+    for (std::size_t k = 0; k < grains_.size(); ++k) {
+        Grain<Dim> grain = scene.grains[grains_[k]];
+        const Particles<Dim> particles = particles_now(scene, now, grain);
+        grain.first = 0;
+        const GrainMotion<Dim> motion = grain_motion(grain, particles);
+        const double omega = about_z(motion.omega);
+        // The turn since the last row, on the branch that the mean spin points to.
+        const Mat<Dim> turn = motion.rotation * rotation_[k].transpose();
+        double step = std::atan2(turn(1, 0) - turn(0, 1), turn(0, 0) + turn(1, 1));
+        const double expected = 0.5 * (omega + omega_[k]) * elapsed;
+        step += 2.0 * std::numbers::pi * std::round((expected - step) / (2.0 * std::numbers::pi));
+        angle_[k] += step;
+        rotation_[k] = motion.rotation;
+        omega_[k] = omega;
+        GrainRow row;
+        row.time = now.time;
+        row.grain = grain.id;
+        row.angle = angle_[k];
+        row.omega = omega;
+        for (int a = 0; a < Dim; ++a) {
+            row.position[a] = motion.centre[a];
+            row.velocity[a] = motion.velocity[a];
+            row.force[a] = elapsed > 0.0 ? now.grain_impulse[grains_[k]][a] / elapsed : 0.0;
+        }
+        rows.push_back(row);
+    }
+    for (Vec<Dim>& impulse : now.grain_impulse) impulse.setZero();
+    return rows;
+}
+
+template <int Dim>
+Frame make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now) {
+    const std::size_t n = static_cast<std::size_t>(scene.particles.size());
+    constexpr std::size_t n_stress = Dim == 2 ? 4 : 6;
+    Frame frame;
+    frame.dimension = Dim;
+    frame.step = now.step;
+    frame.time = now.time;
+    frame.position.resize(n * Dim);
+    frame.velocity.resize(n * Dim);
+    frame.damage.resize(n);
+    frame.stress.resize(n * n_stress);
+    frame.grain.resize(n);
+    frame.volume = scene.particles.volume;
+    for (const MaterialGroup<Dim>& group : scene.groups)
+        std::visit(
+            [&](const auto& model) {
+                parallel::for_each(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
+                        const int g = group.first_grain + static_cast<int>(i);
+                        const Grain<Dim>& grain = scene.grains[g];
+                        const std::size_t first = static_cast<std::size_t>(grain.first);
+                        const std::size_t count = static_cast<std::size_t>(grain.count);
+                        model.compute_damage(scene.view(g), {frame.damage.data() + first, count});
+                        model.compute_stress(scene.view(g),
+                                             {frame.stress.data() + n_stress * first, n_stress * count});
+                        for (std::size_t p = first; p < first + count; ++p) {
+                            const Vec<Dim> v = velocity_now(scene, now, static_cast<int>(p));
+                            for (std::size_t a = 0; a < Dim; ++a) {
+                                frame.position[p * Dim + a] = scene.particles.x[p][static_cast<int>(a)];
+                                frame.velocity[p * Dim + a] = v[static_cast<int>(a)];
+                            }
+                            frame.grain[p] = grain.id;
+                        }
+                    });
+            },
+            group.model);
+    return frame;
+}
+
+template <int Dim>
+std::string state_hash(const Scene<Dim>& scene) {
+    std::uint64_t hash = 14695981039346656037ull;
+    const auto add = [&](const Vec<Dim>& v) {
+        for (int a = 0; a < Dim; ++a) {
+            std::uint64_t bits;
+            const double value = v[a];
+            std::memcpy(&bits, &value, sizeof bits);
+            for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 1099511628211ull;
+        }
+    };
+    for (const int g : scene.grain_of_id)
+        for (int p = scene.grains[g].first; p < scene.grains[g].first + scene.grains[g].count; ++p) {
+            add(scene.particles.x[p]);
+            add(scene.particles.v[p]);
+        }
+    return fmt::format("{:016x}", hash);
+}
+
+template class Observer<2>;
+template class Observer<3>;
+template class GrainTracker<2>;
+template class GrainTracker<3>;
+template Frame make_frame<2>(const Scene<2>&, const StepContext<2>&);
+template Frame make_frame<3>(const Scene<3>&, const StepContext<3>&);
+template std::string state_hash<2>(const Scene<2>&);
+template std::string state_hash<3>(const Scene<3>&);
+
+}  // namespace quern

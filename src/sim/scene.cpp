@@ -1,0 +1,348 @@
+#include "src/sim/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "grid/error.hpp"
+#include "grid/parallel.hpp"
+#include "src/mesh/make_shape.hpp"
+
+namespace quern {
+
+namespace {
+
+template <int Dim>
+Vec<Dim> vec(const Numbers3& v) {
+    Vec<Dim> r;
+    for (int a = 0; a < Dim; ++a) r[a] = v[a];
+    return r;
+}
+
+Spin<2> spin(const Numbers3& v, Spin<2>) {
+    return Spin<2>(v[2]);
+}
+Spin<3> spin(const Numbers3& v, Spin<3>) {
+    return {v[0], v[1], v[2]};
+}
+
+template <int Dim>
+CartesianGrid<Dim> make_grid(const GridDeck& deck) {
+    IntVec<Dim> n;
+    std::array<bool, Dim> periodic{};
+    for (int a = 0; a < Dim; ++a) {
+        n[a] = std::max(1, static_cast<int>(std::ceil(deck.extent[a] / deck.spacing - 1e-9)));
+        periodic[a] = deck.periodic[a];
+        if (periodic[a] && n[a] < 4)
+            throw InputError(deck.place.text(), fmt::format("{} cells on a periodic axis", n[a]),
+                             "4 or more");
+    }
+    return CartesianGrid<Dim>(vec<Dim>(deck.origin), deck.spacing, n, periodic);
+}
+
+GridContactOptions contact_options(const ContactDeck& deck) {
+    GridContactOptions options;
+    options.rule = deck.rule == ContactRule::seed ? GridRule::seed : GridRule::pair;
+    options.coupling = deck.coupling == ContactCoupling::flip ? GridCoupling::flip : GridCoupling::impulse;
+    options.interior_weight = deck.interior_weight;
+    options.max_sweeps = deck.max_sweeps;
+    options.tolerance = deck.tolerance;
+    options.tile = deck.tile;
+    options.curvature = deck.curvature;
+    options.rotation = deck.rotation;
+    options.gap_test = deck.gap_test;
+    options.exact_mass = deck.exact_mass;
+    return options;
+}
+
+template <class Named>
+int index_of(const std::vector<Named>& list, const std::string& name) {
+    const auto it =
+        std::find_if(list.begin(), list.end(), [&](const Named& item) { return item.name == name; });
+    return static_cast<int>(it - list.begin());
+}
+
+/// Grains in the order of their groups: shape, material, then number in the deck.
+template <int Dim>
+void place_grains(const Deck& deck, Scene<Dim>& scene) {
+    const int n_grains = static_cast<int>(deck.grains.size());
+    std::vector<std::tuple<int, int, int>> order;
+    for (int id = 0; id < n_grains; ++id)
+        order.emplace_back(index_of(deck.shapes, deck.grains[id].shape),
+                           index_of(deck.materials, deck.grains[id].material), id);
+    std::sort(order.begin(), order.end());
+    scene.grain_of_id.resize(static_cast<std::size_t>(n_grains));
+    std::pair<int, int> previous{-1, -1};
+    for (const auto& [shape_index, material_index, id] : order) {
+        const GrainDeck& from = deck.grains[id];
+        const Material& material = deck.materials[material_index];
+        const Shape<Dim>& shape = *scene.shapes[shape_index];
+        if (previous != std::pair{shape_index, material_index}) {
+            previous = {shape_index, material_index};
+            MaterialGroup<Dim> group{make_model<Dim>(shape, material)};
+            group.first_grain = static_cast<int>(scene.grains.size());
+            group.bond_damping = material.bond_damping;
+            group.damped = material.bond_damping > 0.0;
+            group.breakable = std::isfinite(material.critical_stretch);
+            group.density = material.density;
+            scene.groups.push_back(std::move(group));
+        }
+        MaterialGroup<Dim>& group = scene.groups.back();
+        group.last_grain = static_cast<int>(scene.grains.size()) + 1;
+        Grain<Dim> grain;
+        grain.shape = &shape;
+        grain.scale = from.scale;
+        grain.first = scene.particles.size();
+        grain.count = shape.n_nodes();
+        grain.material = material_index;
+        grain.id = id;
+        const double volume_scale = std::pow(from.scale, Dim);
+        const Mat<Dim> R = rotation_matrix(spin(from.angle, Spin<Dim>{}));
+        for (int i = 0; i < shape.n_nodes(); ++i) {
+            const Vec<Dim> x = vec<Dim>(from.position) + from.scale * (R * shape.X[i]);
+            if (!scene.grid.contains(x))
+                throw InputError(from.place.text(),
+                                 fmt::format("grain {} with a particle outside the grid", id),
+                                 "every grain inside the grid", "move the grain or enlarge grid.extent");
+            for (std::size_t w = 0; w < scene.walls.size(); ++w)
+                if (scene.walls[w].distance(x) < -0.5 * shape.dx * from.scale)
+                    throw InputError(from.place.text(),
+                                     fmt::format("grain {} reaching {:.3g} m behind wall '{}'", id,
+                                                 -scene.walls[w].distance(x), deck.walls[w].name),
+                                     "every grain in front of every wall", "move the grain or the wall");
+            scene.particles.x.push_back(x);
+            scene.particles.volume.push_back(volume_scale * shape.volume[i]);
+            scene.particles.mass.push_back(material.density * volume_scale * shape.volume[i]);
+            grain.volume += scene.particles.volume.back();
+            grain.mass += scene.particles.mass.back();
+        }
+        const std::size_t n_bonds =
+            static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
+        scene.n_bonds += static_cast<std::int64_t>(n_bonds);
+        scene.alive_begin.push_back(scene.alive.size());
+        if (group.breakable) scene.alive.resize(scene.alive.size() + n_bonds, 1);
+        scene.grain_of_id[static_cast<std::size_t>(id)] = static_cast<int>(scene.grains.size());
+        scene.grains.push_back(grain);
+    }
+    scene.alive_begin.push_back(scene.alive.size());
+}
+
+/// Grains that overlap at the start would be thrown apart: surface particles of two grains must not be nearer
+/// than 0.3 spacings.
+template <int Dim>
+void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
+    double cell = 0.0;
+    for (const Grain<Dim>& grain : scene.grains) cell = std::max(cell, 0.3 * grain.shape->dx * grain.scale);
+    struct Point {
+        std::int64_t key;
+        int grain, particle;
+        bool operator<(const Point& other) const { return key < other.key; }
+    };
+    std::array<std::int64_t, Dim> stride;
+    stride[0] = 1;
+    for (int a = 1; a < Dim; ++a)
+        stride[a] =
+            stride[a - 1] * static_cast<std::int64_t>(2.0 * scene.grid.extent().maxCoeff() / cell + 8.0);
+    std::vector<Point> points;
+    for (std::size_t g = 0; g < scene.grains.size(); ++g)
+        for (const SurfacePoint<Dim>& s : scene.grains[g].shape->surface) {
+            const int p = scene.grains[g].first + s.node;
+            std::int64_t key = 0;
+            for (int a = 0; a < Dim; ++a)
+                key += stride[a] * static_cast<std::int64_t>(
+                                       std::floor((scene.particles.x[p][a] - scene.grid.origin()[a]) / cell));
+            points.push_back({key, static_cast<int>(g), p});
+        }
+    std::stable_sort(points.begin(), points.end());
+    const auto spacing = [&](int g) { return scene.grains[g].shape->dx * scene.grains[g].scale; };
+    const auto compare = [&](const Point& a, const Point& b) {
+        if (a.grain <= b.grain) return;
+        const double limit = 0.3 * std::min(spacing(a.grain), spacing(b.grain));
+        if ((scene.particles.x[a.particle] - scene.particles.x[b.particle]).squaredNorm() >= limit * limit)
+            return;
+        const int first = std::min(scene.grains[a.grain].id, scene.grains[b.grain].id);
+        const int second = std::max(scene.grains[a.grain].id, scene.grains[b.grain].id);
+        throw InputError(deck.grains[second].place.text(),
+                         fmt::format("grain {} overlapping grain {}", second, first),
+                         "grains apart or just touching", "move one of them");
+    };
+    for (const Point& point : points) {
+        constexpr int n_rows = Dim == 2 ? 3 : 9;  // rows of cells along the first axis
+        for (int row = 0; row < n_rows; ++row) {
+            std::int64_t key = point.key + stride[1] * (row % 3 - 1);
+            if constexpr (Dim == 3) key += stride[2] * (row / 3 - 1);
+            auto it = std::lower_bound(points.begin(), points.end(), Point{key - 1, 0, 0});
+            for (; it != points.end() && it->key <= key + 1; ++it) compare(point, *it);
+        }
+    }
+}
+
+template <int Dim>
+std::vector<int> select_particles(const Scene<Dim>& scene, const std::vector<int>& ids,
+                                  const std::optional<Expression>& region) {
+    std::vector<int> particles;
+    for (std::size_t id = 0; id < scene.grain_of_id.size(); ++id) {
+        if (!ids.empty() && std::find(ids.begin(), ids.end(), static_cast<int>(id)) == ids.end()) continue;
+        const Grain<Dim>& grain = scene.grains[scene.grain_of_id[id]];
+        for (int p = grain.first; p < grain.first + grain.count; ++p) {
+            const Vec<Dim>& x = scene.particles.x[p];
+            if (!region || (*region)(x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0, 0.0) != 0.0)
+                particles.push_back(p);
+        }
+    }
+    return particles;
+}
+
+void require_particles(const Place& place, const std::vector<int>& particles) {
+    if (particles.empty())
+        throw InputError(place.text(), "a region without particles", "at least one particle in it");
+}
+
+template <int Dim>
+void add_walls(const Deck& deck, Scene<Dim>& scene) {
+    for (const WallDeck& from : deck.walls) {
+        Wall<Dim> wall;
+        wall.point = vec<Dim>(from.point);
+        wall.normal = vec<Dim>(from.normal).normalized();
+        wall.friction = from.friction;
+        std::array<Expression, Dim> velocity;
+        for (int k = 0; k < Dim && !from.velocity.empty(); ++k) velocity[k] = from.velocity[k];
+        for (int k = 0; k < Dim; ++k) wall.velocity[k] = velocity[k](0.0);
+        scene.walls.push_back(wall);
+        scene.wall_velocity.push_back(velocity);
+    }
+}
+
+template <int Dim>
+void add_loads_and_constraints(const Deck& deck, Scene<Dim>& scene) {
+    for (const LoadDeck& from : deck.loads) {
+        Load<Dim> load;
+        load.particles = select_particles(scene, from.grains, from.region);
+        require_particles(from.place, load.particles);
+        load.per_mass = from.per_mass;
+        for (int k = 0; k < Dim; ++k) load.value[k] = from.value[k];
+        scene.loads.push_back(std::move(load));
+    }
+    for (const ConstraintDeck& from : deck.constraints) {
+        Constraint<Dim> constraint;
+        constraint.particles = select_particles(scene, from.grains, from.region);
+        require_particles(from.place, constraint.particles);
+        for (int k = 0; k < Dim; ++k) constraint.velocity[k] = from.velocity[k];
+        scene.constraints.push_back(std::move(constraint));
+    }
+}
+
+}  // namespace
+
+template <int Dim>
+GrainView<Dim> Scene<Dim>::view(int grain) const {
+    const std::size_t first = static_cast<std::size_t>(grains[grain].first);
+    const std::size_t count = static_cast<std::size_t>(grains[grain].count);
+    return {grains[grain].scale,
+            {particles.x.data() + first, count},
+            {particles.v.data() + first, count},
+            {alive.data() + alive_begin[grain], alive_begin[grain + 1] - alive_begin[grain]}};
+}
+
+template <int Dim>
+std::span<std::uint8_t> Scene<Dim>::alive_of(int grain) {
+    return {alive.data() + alive_begin[grain], alive_begin[grain + 1] - alive_begin[grain]};
+}
+
+template <int Dim>
+const MaterialGroup<Dim>& Scene<Dim>::group_of(int grain) const {
+    return *std::find_if(groups.begin(), groups.end(),
+                         [&](const auto& group) { return grain < group.last_grain; });
+}
+
+template <int Dim>
+double Scene<Dim>::elastic_energy() const {
+    double energy = 0.0;
+    for (const MaterialGroup<Dim>& group : groups)
+        energy += std::visit(
+            [&](const auto& model) {
+                return parallel::sum(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), 0.0, [&](std::size_t i) {
+                        return model.elastic_energy(view(group.first_grain + static_cast<int>(i)));
+                    });
+            },
+            group.model);
+    return energy;
+}
+
+template <int Dim>
+double Scene<Dim>::stable_step() const {
+    double least = std::numeric_limits<double>::infinity();
+    for (const MaterialGroup<Dim>& group : groups) {
+        const double omega = std::visit([](const auto& model) { return model.max_frequency(); }, group.model);
+        const double zeta = 0.5 * omega * group.bond_damping;  // critical fraction of the fastest mode
+        for (int g = group.first_grain; g < group.last_grain; ++g)
+            least = std::min(least, 2.0 * grains[g].scale / omega *
+                                        (std::sqrt(1.0 + zeta * zeta / (grains[g].scale * grains[g].scale)) -
+                                         zeta / grains[g].scale));
+    }
+    return least;
+}
+
+template <int Dim>
+std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
+    auto scene = std::make_unique<Scene<Dim>>(make_grid<Dim>(deck.grid));
+    for (const ShapeDeck& shape : deck.shapes)
+        scene->shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
+    add_walls(deck, *scene);
+    place_grains(deck, *scene);
+    check_overlap(deck, *scene);
+    scene->x_start = scene->particles.x;
+    const std::size_t n = scene->particles.x.size();
+    scene->particles.v.assign(n, Vec<Dim>::Zero());
+    StepArrays<Dim>& arrays = scene->arrays;
+    arrays.internal.resize(n);
+    arrays.v_before.resize(n);
+    if (!deck.loads.empty()) arrays.load.resize(n);
+    if (std::any_of(scene->groups.begin(), scene->groups.end(),
+                    [](const auto& group) { return group.damped; }))
+        arrays.damping.assign(n, Vec<Dim>::Zero());
+    scene->friction = FrictionTable(static_cast<int>(deck.materials.size()), deck.contact.friction);
+    for (const FrictionPair& pair : deck.contact.pairs)
+        scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second),
+                            pair.value);
+    if (deck.contact.rule != ContactRule::none) {
+        scene->contact.emplace(scene->grid, contact_options(deck.contact));
+        if (scene->contact->moves_with_grid()) {
+            arrays.drift.assign(n, Vec<Dim>::Zero());
+            arrays.drift_before.assign(n, Vec<Dim>::Zero());
+        }
+    }
+    scene->gravity = vec<Dim>(deck.gravity);
+    scene->mass_damping = deck.mass_damping;
+    add_loads_and_constraints(deck, *scene);
+    return scene;
+}
+
+template <int Dim>
+void set_initial_velocities(const Deck& deck, Scene<Dim>& scene) {
+    for (const Grain<Dim>& grain : scene.grains) {
+        const GrainDeck& from = deck.grains[grain.id];
+        Vec<Dim> centre = Vec<Dim>::Zero();
+        for (int p = grain.first; p < grain.first + grain.count; ++p)
+            centre += scene.particles.mass[p] * scene.particles.x[p];
+        centre /= grain.mass;
+        const Spin<Dim> omega = spin(from.spin, Spin<Dim>{});
+        for (int p = grain.first; p < grain.first + grain.count; ++p)
+            scene.particles.v[p] =
+                vec<Dim>(from.velocity) + cross(omega, Vec<Dim>(scene.particles.x[p] - centre));
+    }
+    if (!scene.arrays.drift.empty()) scene.arrays.drift = scene.particles.v;
+}
+
+template struct Scene<2>;
+template struct Scene<3>;
+template std::unique_ptr<Scene<2>> make_scene<2>(const Deck&);
+template std::unique_ptr<Scene<3>> make_scene<3>(const Deck&);
+template void set_initial_velocities<2>(const Deck&, Scene<2>&);
+template void set_initial_velocities<3>(const Deck&, Scene<3>&);
+
+}  // namespace quern

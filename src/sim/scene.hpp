@@ -1,0 +1,93 @@
+// Everything a step works on: grains, forces, contact, loads. Built once from a deck.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "contact/grid_contact.hpp"
+#include "particles/grains.hpp"
+#include "particles/peridynamic_model.hpp"
+#include "src/deck/deck.hpp"
+
+namespace quern {
+
+/// Grains of one shape and one material, next to each other: one dispatch serves them all.
+template <int Dim>
+struct MaterialGroup {
+    PeridynamicModel<Dim> model;
+    int first_grain = 0, last_grain = 0;  ///< range [first, last)
+    bool damped = false, breakable = false;
+    double bond_damping = 0.0;  ///< [s]
+    double density = 0.0;       ///< [kg/m^3]
+};
+
+/// Body force on some particles.
+template <int Dim>
+struct Load {
+    std::vector<int> particles;
+    bool per_mass = true;
+    std::array<Expression, Dim> value;  ///< [m/s^2] or [N/m^3]
+};
+
+/// Prescribed velocity of some particles.
+template <int Dim>
+struct Constraint {
+    std::vector<int> particles;
+    std::array<std::optional<Expression>, Dim> velocity;  ///< [m/s]
+};
+
+/// Forces of the present step [N; 2D: N/m] and velocities around it [m/s], one entry a particle.
+template <int Dim>
+struct StepArrays {
+    std::vector<Vec<Dim>> internal, damping, load;
+    std::vector<Vec<Dim>> v_before;  ///< velocity half a step back
+    std::vector<Vec<Dim>> drift;     ///< flip coupling: velocity that moves positions
+    std::vector<Vec<Dim>> drift_before;
+};
+
+template <int Dim>
+struct Scene {
+    explicit Scene(const CartesianGrid<Dim>& background) : grid(background), friction(1, 0.0) {}
+
+    CartesianGrid<Dim> grid;
+    std::vector<std::unique_ptr<Shape<Dim>>> shapes;
+    std::vector<MaterialGroup<Dim>> groups;
+    std::vector<Grain<Dim>> grains;  ///< sorted by group; Grain::id is the number in the deck
+    std::vector<int> grain_of_id;    ///< [n_grains] position of each deck number in `grains`
+    Particles<Dim> particles;
+    std::vector<Vec<Dim>> x_start;         ///< positions as placed [m]
+    std::vector<std::uint8_t> alive;       ///< bonds of breakable grains, 0 = broken
+    std::vector<std::size_t> alive_begin;  ///< [n_grains] into `alive`
+    std::int64_t n_bonds = 0;
+
+    std::vector<Wall<Dim>> walls;
+    std::vector<std::array<Expression, Dim>> wall_velocity;
+    FrictionTable friction;
+    std::optional<GridContact<Dim>> contact;
+    Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+    double mass_damping = 0.0;            ///< [1/s]
+    std::vector<Load<Dim>> loads;
+    std::vector<Constraint<Dim>> constraints;
+    StepArrays<Dim> arrays;
+
+    GrainView<Dim> view(int grain) const;
+    std::span<std::uint8_t> alive_of(int grain);
+    const MaterialGroup<Dim>& group_of(int grain) const;
+    double elastic_energy() const;  ///< [J; 2D: J/m]
+    double stable_step() const;     ///< largest stable time step, bond damping included [s]
+};
+
+/// Builds the scene of a deck. Throws InputError (grain outside the grid, grains overlapping, material or
+/// shape that cannot be built).
+template <int Dim>
+std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck);
+
+/// Velocities of the deck: translation and spin of every grain.
+template <int Dim>
+void set_initial_velocities(const Deck& deck, Scene<Dim>& scene);
+
+}  // namespace quern

@@ -1,0 +1,329 @@
+#include "src/sim/step.hpp"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+
+#include "grid/error.hpp"
+#include "grid/parallel.hpp"
+
+namespace quern {
+
+namespace {
+
+/// Adds the time between its birth and its death to a stage.
+class StageTimer {
+  public:
+    explicit StageTimer(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+    ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+    StageTimer(const StageTimer&) = delete;
+    StageTimer& operator=(const StageTimer&) = delete;
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    double& seconds_;
+    Clock::time_point start_;
+};
+
+template <int Dim>
+void break_bonds(Scene<Dim>& scene, StepContext<Dim>& now) {
+    for (const MaterialGroup<Dim>& group : scene.groups) {
+        if (!group.breakable) continue;
+        struct Broken {
+            std::int64_t count = 0;
+            double released = 0.0;
+            Broken& operator+=(const Broken& other) {
+                count += other.count;
+                released += other.released;
+                return *this;
+            }
+        };
+        const auto broken = std::visit(
+            [&](const auto& model) {
+                return parallel::sum(
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
+                    [&](std::size_t i) {
+                        const int g = group.first_grain + static_cast<int>(i);
+                        const GrainView<Dim> view = scene.view(g);
+                        thread_local std::vector<std::uint8_t> intact;
+                        intact.assign(view.alive.begin(), view.alive.end());
+                        Broken grain;
+                        grain.count = model.break_bonds(view, scene.alive_of(g));
+                        if (grain.count == 0) return grain;
+                        grain.released = -model.elastic_energy(view);
+                        grain.released += model.elastic_energy({view.scale, view.x, view.v, intact});
+                        return grain;
+                    });
+            },
+            group.model);
+        now.newly_broken += broken.count;
+        now.ledger.past.fracture += broken.released;
+    }
+}
+
+template <int Dim>
+void add_internal_forces(Scene<Dim>& scene) {
+    StepArrays<Dim>& a = scene.arrays;
+    for (const MaterialGroup<Dim>& group : scene.groups) {  // one dispatch a group
+        std::visit(
+            [&](const auto& model) {
+                parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain),
+                                   [&](std::size_t i) {
+                                       const int g = group.first_grain + static_cast<int>(i);
+                                       const Grain<Dim>& grain = scene.grains[g];
+                                       const std::size_t first = static_cast<std::size_t>(grain.first);
+                                       const std::size_t count = static_cast<std::size_t>(grain.count);
+                                       std::span<Vec<Dim>> f(a.internal.data() + first, count);
+                                       std::fill(f.begin(), f.end(), Vec<Dim>::Zero());
+                                       model.add_internal_forces(scene.view(g), f);
+                                       if (!group.damped) return;
+                                       std::span<Vec<Dim>> f_damping(a.damping.data() + first, count);
+                                       std::fill(f_damping.begin(), f_damping.end(), Vec<Dim>::Zero());
+                                       model.add_damping_forces(scene.view(g), f_damping);
+                                   });
+            },
+            group.model);
+    }
+}
+
+template <int Dim>
+double value(const Expression& expression, const Vec<Dim>& x, double t) {
+    return expression(x[0], x[1], Dim == 3 ? x[Dim - 1] : 0.0, t);
+}
+
+template <int Dim>
+void add_loads(Scene<Dim>& scene, double time) {
+    StepArrays<Dim>& a = scene.arrays;
+    std::fill(a.load.begin(), a.load.end(), Vec<Dim>::Zero());
+    for (const Load<Dim>& load : scene.loads)
+        for (const int p : load.particles) {
+            const double amount = load.per_mass ? scene.particles.mass[p] : scene.particles.volume[p];
+            for (int k = 0; k < Dim; ++k)
+                a.load[p][k] += amount * value<Dim>(load.value[k], scene.particles.x[p], time);
+        }
+}
+
+/// v* = v + dt f/m, and what the forces do on the way.
+template <int Dim>
+void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
+    StepArrays<Dim>& a = scene.arrays;
+    Particles<Dim>& particles = scene.particles;
+    const bool loaded = !scene.loads.empty();
+    const bool bond_damped = !a.damping.empty();
+    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    struct Sums {
+        typename Ledger<Dim>::Entry entry;
+        double damping_half = 0, load_half = 0, kinetic = 0;
+        Sums& operator+=(const Sums& other) {
+            entry += other.entry;
+            damping_half += other.damping_half;
+            load_half += other.load_half;
+            kinetic += other.kinetic;
+            return *this;
+        }
+    };
+    std::swap(a.v_before, particles.v);
+    if (with_grid) std::swap(a.drift_before, a.drift);
+    const std::vector<Vec<Dim>>& before = with_grid ? a.drift_before : a.v_before;
+    const Sums sums = parallel::sum(static_cast<std::size_t>(particles.size()), Sums{}, [&](std::size_t p) {
+        const double m = particles.mass[p];
+        const Vec<Dim> v = a.v_before[p];
+        Vec<Dim> damping = -scene.mass_damping * m * v;
+        if (bond_damped) damping += a.damping[p];
+        const Vec<Dim> load = loaded ? a.load[p] : Vec<Dim>(Vec<Dim>::Zero());
+        const Vec<Dim> outside = m * scene.gravity + load - scene.mass_damping * m * v;
+        const Vec<Dim> dp = dt * (a.internal[p] + m * scene.gravity + damping + load);
+        particles.v[p] = v + dp / m;
+        Sums s;
+        s.entry.impulse = dt * outside;
+        s.entry.moment = moment(particles.x[p], Vec<Dim>(dt * outside));
+        s.damping_half = 0.5 * dt * damping.dot(before[p]);
+        s.load_half = 0.5 * dt * load.dot(before[p]);
+        s.kinetic = 0.5 * m * v.squaredNorm() + now.part_done() * dp.dot(before[p]);
+        return s;
+    });
+    now.ledger.now = sums.entry;
+    now.ledger.damping_half = sums.damping_half;
+    now.ledger.load_half = sums.load_half;
+    now.ledger.kinetic = sums.kinetic;
+}
+
+/// Prescribed velocities; the impulse that they take is external. Before contact its work is taken with the
+/// prescribed velocity, which is the final one; what undoes contact, with the velocity that contact had left:
+/// so the works of both sum to the change of kinetic energy.
+template <int Dim>
+void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_contact) {
+    for (const Constraint<Dim>& constraint : scene.constraints)
+        for (const int p : constraint.particles) {
+            Vec<Dim> v = scene.particles.v[p];
+            for (int k = 0; k < Dim; ++k)
+                if (constraint.velocity[k])
+                    v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
+            const Vec<Dim> dp = scene.particles.mass[p] * (v - scene.particles.v[p]);
+            const Vec<Dim> v_work = after_contact ? scene.particles.v[p] : v;
+            now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
+            scene.particles.v[p] = v;
+            now.ledger.now.impulse += dp;
+            now.ledger.now.moment += moment(scene.particles.x[p], dp);
+        }
+}
+
+template <int Dim>
+void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
+    if (!scene.contact) return;
+    const Particles<Dim>& particles = scene.particles;
+    const ContactScene<Dim> view{scene.grains,     particles.x, particles.mass,
+                                 particles.volume, scene.walls, &scene.friction};
+    const ContactReport<Dim>& report = scene.contact->add_impulses(
+        view, {now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift});
+    typename Ledger<Dim>::Entry& entry = now.ledger.now;
+    entry.normal += report.normal_work;
+    entry.friction += report.friction_work;
+    entry.wall += report.wall_work;
+    for (std::size_t w = 0; w < report.wall_impulse.size(); ++w) {
+        entry.impulse -= report.wall_impulse[w];
+        entry.moment -= report.wall_moment[w];
+        now.wall_impulse[w] += report.wall_impulse[w];
+    }
+    for (std::size_t g = 0; g < report.grain_impulse.size(); ++g)
+        now.grain_impulse[g] += report.grain_impulse[g];
+    now.contact_nodes += report.n_nodes;
+    now.contacts += report.n_contacts;
+    now.sweeps += report.sweeps;
+    if (!report.converged && now.unconverged++ == 0) now.first_unconverged = now.step;
+}
+
+/// Works of this step that need the velocities after contact.
+template <int Dim>
+void close_ledger(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
+    StepArrays<Dim>& a = scene.arrays;
+    const Particles<Dim>& particles = scene.particles;
+    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const bool loaded = !scene.loads.empty(), bond_damped = !a.damping.empty();
+    typename Ledger<Dim>::Entry& entry = now.ledger.now;
+    if (!with_grid && !loaded && !bond_damped && scene.mass_damping == 0.0) return;
+    const std::vector<Vec<Dim>>& after = with_grid ? a.drift : particles.v;
+    struct Sums {
+        double damping = 0, load = 0, transfer = 0;
+        Sums& operator+=(const Sums& other) {
+            damping += other.damping;
+            load += other.load;
+            transfer += other.transfer;
+            return *this;
+        }
+    };
+    const Sums sums = parallel::sum(static_cast<std::size_t>(particles.size()), Sums{}, [&](std::size_t p) {
+        const double m = particles.mass[p];
+        const Vec<Dim> v = a.v_before[p];
+        Vec<Dim> damping = -scene.mass_damping * m * v;
+        if (bond_damped) damping += a.damping[p];
+        Sums s;
+        s.damping = 0.5 * dt * damping.dot(after[p]);
+        if (loaded) s.load = 0.5 * dt * a.load[p].dot(after[p]);
+        if (with_grid) {
+            Vec<Dim> force = a.internal[p] + m * scene.gravity + damping;
+            if (loaded) force += a.load[p];
+            s.transfer = 0.5 * dt * force.dot(a.drift_before[p] + a.drift[p]) -
+                         0.5 * m * (particles.v[p].squaredNorm() - v.squaredNorm());
+        }
+        return s;
+    });
+    entry.damping = now.ledger.damping_half + sums.damping;
+    entry.load = now.ledger.load_half + sums.load;
+    if (with_grid)
+        entry.transfer = sums.transfer + entry.normal + entry.friction + entry.wall + entry.constraint;
+}
+
+}  // namespace
+
+template <int Dim>
+typename Ledger<Dim>::Entry& Ledger<Dim>::Entry::operator+=(const Entry& other) {
+    damping += other.damping;
+    load += other.load;
+    constraint += other.constraint;
+    normal += other.normal;
+    friction += other.friction;
+    wall += other.wall;
+    fracture += other.fracture;
+    transfer += other.transfer;
+    impulse += other.impulse;
+    moment += other.moment;
+    return *this;
+}
+
+template <int Dim>
+void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
+    const double dt = now.first ? 0.5 * now.dt : now.dt;
+    {
+        const StageTimer timer(now.stages.internal_forces);
+        break_bonds(scene, now);
+        add_internal_forces(scene);
+    }
+    {
+        const StageTimer timer(now.stages.loads);
+        if (!scene.loads.empty()) add_loads(scene, now.time);
+    }
+    {
+        const StageTimer timer(now.stages.kick);
+        predict(scene, now, dt);
+        apply_constraints(scene, now, false);
+    }
+    {
+        const StageTimer timer(now.stages.contact);
+        add_contact(scene, now);
+    }
+    const StageTimer timer(now.stages.kick);
+    if (scene.contact) apply_constraints(scene, now, true);
+    close_ledger(scene, now, dt);
+}
+
+template <int Dim>
+void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
+    const StageTimer timer(now.stages.drift);
+    Particles<Dim>& particles = scene.particles;
+    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : particles.v;
+    std::atomic<int> lost{particles.size()};
+    parallel::for_each(scene.grains.size(), [&](std::size_t g) {
+        const Grain<Dim>& grain = scene.grains[g];
+        for (int p = grain.first; p < grain.first + grain.count; ++p) {
+            particles.x[p] += now.dt * velocity[p];
+            if (!scene.grid.contains(particles.x[p])) {
+                int least = lost.load();
+                while (p < least && !lost.compare_exchange_weak(least, p)) {
+                }
+            }
+        }
+    });
+    now.ledger.past += now.ledger.now;
+    now.ledger.now = {};
+    now.time = now.dt * static_cast<double>(++now.step);
+    now.first = false;
+    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+        Wall<Dim>& wall = scene.walls[w];
+        wall.point += now.dt * wall.velocity;
+        for (int k = 0; k < Dim; ++k) wall.velocity[k] = scene.wall_velocity[w][k](now.time);
+    }
+    if (lost < particles.size()) {
+        const int p = lost;
+        std::size_t g = 0;
+        while (p >= scene.grains[g].first + scene.grains[g].count) ++g;
+        const bool number = particles.x[p].allFinite();
+        throw SimulationError(fmt::format(
+            "grain {}, particle {}, step {} (t = {:.6g} s): {}", scene.grains[g].id,
+            p - scene.grains[g].first, now.step, now.time,
+            number
+                ? "has left the grid; a wall or a larger grid is missing, or the run is unstable"
+                : "its position is no number; the run is unstable, try a smaller time.safety or time.step"));
+    }
+}
+
+template struct Ledger<2>;
+template struct Ledger<3>;
+template void kick<2>(Scene<2>&, StepContext<2>&);
+template void kick<3>(Scene<3>&, StepContext<3>&);
+template void drift<2>(Scene<2>&, StepContext<2>&);
+template void drift<3>(Scene<3>&, StepContext<3>&);
+
+}  // namespace quern

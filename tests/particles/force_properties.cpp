@@ -1,0 +1,151 @@
+// What every internal-force model must satisfy, whatever its law.
+#include "tests/particles/force_cases.hpp"
+
+using namespace quern;
+using namespace quern::test;
+
+TEST_CASE("Internal forces: rigid motion, far away and turned by two radians, gives none") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        Field<Dim> x;
+        for (const Vec<Dim>& X : shape.X)
+            x.push_back(1.7 * (make_rotation<Dim>(2.0) * X) + Vec<Dim>::Constant(0.5));
+        const double deformed = largest(forces(model, {1.7, make_deformed(shape, 1.7), {}, {}}));
+        // relative to the force of 5 % strain; x itself is rounded to 1e-16 of 0.5 m, 5e-15 of a bond.
+        // measured 5.9e-13, bound 5e-12
+        CHECK(largest(forces(model, {1.7, x, {}, {}})) < 5e-12 * deformed);
+    });
+}
+
+TEST_CASE("Internal forces: minus the gradient of the energy, intact and broken") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        Field<Dim> x = make_deformed(shape, 1.7);
+        const std::vector<std::uint8_t> broken = make_broken(count_bonds(model));
+        for (const std::span<const std::uint8_t> alive : {std::span<const std::uint8_t>(), {broken}}) {
+            const Field<Dim> f = forces(model, {1.7, x, {}, alive});
+            double worst = 0.0;
+            for (std::size_t i = 0; i < x.size(); i += 7)
+                for (int d = 0; d < Dim; ++d) {
+                    const double h = 1e-5 * shape.dx, here = x[i][d];
+                    x[i][d] = here + h;
+                    const double up = energy(model, {1.7, x, {}, alive});
+                    x[i][d] = here - h;
+                    const double down = energy(model, {1.7, x, {}, alive});
+                    x[i][d] = here;
+                    worst = std::max(worst, std::abs(f[i][d] + (up - down) / (2.0 * h)));
+                }
+            CHECK(worst < 1e-8 * largest(f));  // measured 1.0e-9, bound 1e-8
+        }
+    });
+}
+
+TEST_CASE("Internal forces: no net force and no net moment") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Field<Dim> x = make_deformed(shape, 1.7), f = forces(model, {1.7, x, {}, {}});
+        Vec<Dim> total = Vec<Dim>::Zero();
+        Spin<Dim> turn = Spin<Dim>::Zero();
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            total += f[i];
+            turn += moment(x[i], f[i]);
+        }
+        CHECK(total.norm() < 1e-13 * largest(f));              // measured 5e-15, bound 1e-13
+        CHECK(turn.norm() < 1e-13 * largest(f) * largest(x));  // measured 5e-15, bound 1e-13
+    });
+}
+
+TEST_CASE("Internal forces: turn with the frame") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Mat<Dim> R = make_rotation<Dim>(1.1);
+        Field<Dim> x = make_deformed(shape, 1.0), expected = forces(model, {1.0, x, {}, {}});
+        for (Vec<Dim>& point : x) point = (R * point).eval();
+        for (Vec<Dim>& force : expected) force = (R * force).eval();
+        // measured 3e-14, bound 1e-12
+        CHECK(largest_difference(forces(model, {1.0, x, {}, {}}), expected) < 1e-12 * largest(expected));
+    });
+}
+
+TEST_CASE("Internal forces: scale as s^(Dim-1), energy as s^Dim, frequency of a rebuilt shape as 1/s") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const double s = 2.5;
+        Shape<Dim> large = shape;
+        for (Vec<Dim>& X : large.X) X *= s;
+        for (double& volume : large.volume) volume *= std::pow(s, Dim);
+        large.dx *= s;
+        const auto model = make_model(shape, material), rebuilt = make_model(large, material);
+        const Field<Dim> x = make_deformed(shape, s);
+        const Field<Dim> expected = forces(rebuilt, {1.0, x, {}, {}});
+        // measured 3e-14, bound 1e-12
+        CHECK(largest_difference(forces(model, {s, x, {}, {}}), expected) < 1e-12 * largest(expected));
+        CHECK(energy(model, {s, x, {}, {}}) == doctest::Approx(energy(rebuilt, {1.0, x, {}, {}}))
+                                                   .epsilon(1e-12));  // measured 1e-15, bound 1e-12
+        const auto omega = [](const auto& law) { return law.max_frequency(); };
+        CHECK(std::visit(omega, rebuilt) * s ==
+              doctest::Approx(std::visit(omega, model)).epsilon(1e-10));  // measured 1e-13, bound 1e-10
+    });
+}
+
+TEST_CASE("Internal forces: the fast kernel equals the printed formulas, intact and broken") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, Material material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const Field<Dim> x = make_deformed(shape, 1.7);
+        for (const Calibration calibration : {Calibration::none, Calibration::discrete})
+            for (const SurfaceCorrection correction : {SurfaceCorrection::none, SurfaceCorrection::volume}) {
+                material.calibration = calibration;
+                material.surface_correction = correction;
+                const auto fast = make_model(shape, material);
+                const auto printed = make_model(shape, material, Kernel::reference);
+                const std::vector<std::uint8_t> broken = make_broken(count_bonds(fast));
+                for (const std::span<const std::uint8_t> alive :
+                     {std::span<const std::uint8_t>(), {broken}}) {
+                    const Field<Dim> expected = forces(printed, {1.7, x, {}, alive});
+                    // measured 2e-14, bound 1e-12
+                    CHECK(largest_difference(forces(fast, {1.7, x, {}, alive}), expected) <
+                          1e-12 * largest(expected));
+                }
+            }
+    });
+}
+
+TEST_CASE("Internal forces: accumulate, repeat to the bit, and do not mind whole masks") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Field<Dim> x = make_deformed(shape, 1.0), once = forces(model, {1.0, x, {}, {}});
+        const std::vector<std::uint8_t> whole(count_bonds(model), 1);
+        CHECK(largest_difference(forces(model, {1.0, x, {}, whole}), once) == 0.0);
+        Field<Dim> twice = once;
+        std::visit([&](const auto& law) { law.add_internal_forces({1.0, x, {}, {}}, twice); }, model);
+        for (Vec<Dim>& force : twice) force *= 0.5;
+        CHECK(largest_difference(twice, once) == 0.0);
+    });
+}
+
+TEST_CASE("Internal forces: the linearised operator is their derivative at rest, and symmetric") {
+    for_each_case([]<int Dim>(std::integral_constant<int, Dim>, const Material& material) {
+        const Shape<Dim> shape = make_test_shape<Dim>();
+        const auto model = make_model(shape, material);
+        const Field<Dim> deformed = make_deformed(shape, 1.0);
+        Field<Dim> u, other, plus, minus;
+        for (std::size_t i = 0; i < deformed.size(); ++i) {
+            u.push_back(deformed[i] - shape.X[i]);
+            other.push_back(Vec<Dim>::Constant(std::cos(3.0 * static_cast<double>(i))));
+            plus.push_back(shape.X[i] + 1e-5 * u[i]);
+            minus.push_back(shape.X[i] - 1e-5 * u[i]);
+        }
+        const Field<Dim> linear = linear_forces(model, u);
+        Field<Dim> slope = forces(model, {1.0, plus, {}, {}});
+        const Field<Dim> back = forces(model, {1.0, minus, {}, {}});
+        for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - back[i]) / 2e-5;
+        CHECK(largest_difference(slope, linear) < 1e-8 * largest(linear));  // measured 1e-9, bound 1e-8
+        const double one = dot(linear, other), two = dot(linear_forces(model, other), u);
+        CHECK(std::abs(one - two) < 1e-12 * std::abs(one));  // measured 1e-14, bound 1e-12
+    });
+}
