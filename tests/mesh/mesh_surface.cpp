@@ -89,9 +89,9 @@ TEST_CASE("Mesh surface: the mesh of a ball is seen as a sphere") {
     }
 }
 
-TEST_CASE("Mesh surface: normals and mean curvature of an ellipsoid converge") {
+TEST_CASE("Mesh surface: normals of an ellipsoid converge, its curvature is near") {
     const Vec<3> axes(2.0, 1.0, 1.5);
-    double previous_normal = 0.0, previous_kappa = 0.0;
+    double previous_normal = 0.0;
     for (const double spacing : {0.2, 0.1}) {
         ElementMesh<3> mesh = generate_mesh(Ball<3>(1.0), spacing);
         for (Vec<3>& x : mesh.X) x = x.cwiseProduct(axes);
@@ -108,13 +108,9 @@ TEST_CASE("Mesh surface: normals and mean curvature of an ellipsoid converge") {
         }
         normal = std::sqrt(normal);
         kappa = std::sqrt(kappa);
-        MESSAGE(normal, " ", kappa);
-        if (previous_normal > 0.0) {
-            CHECK(previous_normal / normal > 1.8);
-            CHECK(previous_kappa > kappa);
-        }
+        CHECK(kappa < 0.12);  // measured 0.081 and 0.073: scatter of the triangulation, does not vanish
+        if (previous_normal > 0.0) CHECK(previous_normal / normal > 3.0);  // measured 3.67: 0.0112 to 0.0031
         previous_normal = normal;
-        previous_kappa = kappa;
     }
 }
 
