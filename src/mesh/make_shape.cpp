@@ -19,8 +19,9 @@ namespace quern {
 namespace {
 
 std::string where(const ShapeDeck& deck, const char* field) {
-    return fmt::format("{}:{}: {}{}{}", deck.place.file, deck.place.line, deck.place.key,
-                       deck.place.key.empty() ? "" : ".", field);
+    Place place = deck.place;
+    place.key = place.key.empty() ? field : fmt::format("{}.{}", place.key, field);
+    return place.text();
 }
 
 void require_positive(const ShapeDeck& deck, const char* field, double value) {

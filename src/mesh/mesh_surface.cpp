@@ -61,7 +61,7 @@ MeshSurface<3> fit_triangulation(const ElementMesh<3>& mesh) {
     const std::vector<Triangle> triangles = boundary_triangles(mesh);
     const std::size_t n_nodes = mesh.X.size();
     std::vector<bool> on_surface(n_nodes, false), corner(n_nodes, false);
-    std::vector<Vec<3>> normal(n_nodes, Vec<3>::Zero());
+    std::vector<Vec<3>> normal(n_nodes, Vec<3>::Zero()), bisector(n_nodes, Vec<3>::Zero());
 
     std::vector<Vec<3>> face_normal;
     std::vector<std::array<double, 3>> angles;
@@ -72,7 +72,8 @@ MeshSurface<3> fit_triangulation(const ElementMesh<3>& mesh) {
         for (int k = 0; k < 3; ++k) {
             const Vec<3> a = mesh.X[t[(k + 1) % 3]] - mesh.X[t[k]], b = mesh.X[t[(k + 2) % 3]] - mesh.X[t[k]];
             angle[k] = std::atan2(a.cross(b).norm(), a.dot(b));
-            normal[t[k]] += angle[k] * face_normal.back();
+            normal[t[k]] += a.cross(b) / (a.squaredNorm() * b.squaredNorm());
+            bisector[t[k]] += angle[k] * face_normal.back();
             on_surface[t[k]] = true;
             face_beside[{t[k], t[(k + 1) % 3]}] = static_cast<int>(face_normal.size()) - 1;
         }
@@ -84,8 +85,8 @@ MeshSurface<3> fit_triangulation(const ElementMesh<3>& mesh) {
         if (across == face_beside.end() || face_normal[face].dot(face_normal[across->second]) <= least_cosine)
             corner[edge.first] = corner[edge.second] = true;
     }
-    for (Vec<3>& n : normal)
-        if (n.norm() > 0.0) n.normalize();
+    for (std::size_t i = 0; i < n_nodes; ++i)
+        if (on_surface[i]) normal[i] = (corner[i] ? bisector[i] : normal[i]).normalized();
 
     // Every triangle gives half its angle at a node to each of its two edges there.
     std::vector<double> weighted(n_nodes, 0.0), weight(n_nodes, 0.0);
