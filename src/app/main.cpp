@@ -43,8 +43,9 @@ int run(const Arguments& arguments) {
             (std::filesystem::path("out") / std::filesystem::path(arguments.deck).stem()).string();
     }
     options.progress_terminal = isatty(STDERR_FILENO) != 0;
-    Summary summary;
-    const RunOutcome outcome = run_deck(deck, options, &summary);
+    RunRecord record;
+    const RunOutcome outcome = run_deck(deck, options, &record);
+    const Summary& summary = record.summary;
     fmt::print("{}: {} grains, {} particles, {} bonds\n",
                outcome == RunOutcome::done ? "done" : "interrupted", summary.n_grains, summary.n_particles,
                summary.n_bonds);

@@ -123,6 +123,7 @@ struct PrepareDeck {
     std::optional<Numbers3> gravity;  ///< [m/s^2]; none: as in the run
     double mass_damping = 0.0;        ///< [1/s]
     std::optional<double> friction;   ///< for all contacts; none: as in the run
+    std::vector<LoadDeck> loads;      ///< on top of those of the run, which see t = 0
 };
 
 struct TimeDeck {

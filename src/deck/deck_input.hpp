@@ -35,6 +35,10 @@ struct LoadInput : LoadDeck {
     std::vector<Expression> acceleration, force_density;
 };
 
+struct PrepareInput : PrepareDeck {
+    std::vector<LoadInput> load_entries;
+};
+
 struct DampingInput {
     double mass = 0.0;
 };
@@ -53,7 +57,7 @@ struct DeckInput {
     DampingInput damping;
     std::vector<LoadInput> loads;
     std::vector<ConstraintDeck> constraints;
-    PrepareDeck prepare;
+    PrepareInput prepare;
     OutputDeck output;
 };
 

@@ -238,14 +238,15 @@ Table<ConstraintDeck> constraint_table() {
     return t;
 }
 
-Table<PrepareDeck> prepare_table() {
-    using T = PrepareDeck;
+Table<PrepareInput> prepare_table() {
+    using T = PrepareInput;
     Table<T> t;
     t.number("duration", &T::duration, "s", not_negative, "Relaxation before the clock starts");
     t.vector("gravity", &T::gravity, "m/s^2", any_number, "Meanwhile; left out: as in the run");
     t.number("mass_damping", &T::mass_damping, "1/s", not_negative, "Meanwhile: force -mass_damping m v");
     t.number("friction", &T::friction, "", not_negative,
              "Meanwhile, of all contacts; left out: as in the run");
+    t.list("loads", &T::load_entries, load_table(), "Body forces meanwhile, on top of those of the run");
     return t;
 }
 

@@ -137,6 +137,7 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     deck.loads.assign(input.loads.begin(), input.loads.end());
     deck.constraints = std::move(input.constraints);
     deck.prepare = input.prepare;
+    deck.prepare.loads.assign(input.prepare.load_entries.begin(), input.prepare.load_entries.end());
     deck.time = input.time;
     deck.output = std::move(input.output);
     deck.grains = expand_grains(input.grains, deck.shapes, now);

@@ -5,6 +5,12 @@
 namespace quern {
 namespace {
 
+LoadInput load_input(const LoadDeck& load) {
+    LoadInput entry{load, {}, {}};
+    (load.per_mass ? entry.acceleration : entry.force_density) = load.value;
+    return entry;
+}
+
 /// The dimension decides how vectors are written, so it is known before anything else is read.
 int read_dimension(const Cursor& at, const Parameters& parameters) {
     const Context context{parameters, 2, {}};
@@ -38,13 +44,10 @@ DeckInput make_input(const Deck& deck) {
     }
     input.contact = deck.contact;
     input.damping.mass = deck.mass_damping;
-    for (const LoadDeck& load : deck.loads) {
-        LoadInput entry{load, {}, {}};
-        (load.per_mass ? entry.acceleration : entry.force_density) = load.value;
-        input.loads.push_back(entry);
-    }
+    for (const LoadDeck& load : deck.loads) input.loads.push_back(load_input(load));
     input.constraints = deck.constraints;
-    input.prepare = deck.prepare;
+    static_cast<PrepareDeck&>(input.prepare) = deck.prepare;
+    for (const LoadDeck& load : deck.prepare.loads) input.prepare.load_entries.push_back(load_input(load));
     input.output = deck.output;
     return input;
 }

@@ -99,7 +99,8 @@ class Run {
         choose_time_step();
     }
 
-    RunOutcome go(Summary* summary) {
+    RunOutcome go(RunRecord* record) {
+        record_ = record;
         const StopSignals signals;
         host_line();
         prepare();
@@ -111,11 +112,9 @@ class Run {
             summary_.outcome = fmt::format("failed: {}", error.what());
             writer_.log(summary_.outcome);
             close();
-            if (summary) *summary = summary_;
             throw;
         }
         close();
-        if (summary) *summary = summary_;
         return outcome;
     }
 
@@ -167,6 +166,9 @@ class Run {
             const FrictionTable friction = scene_->friction;
             const std::vector<Wall<Dim>> walls = scene_->walls;
             const auto wall_velocity = scene_->wall_velocity;
+            const std::vector<Load<Dim>> loads = scene_->loads;
+            scene_->loads.insert(scene_->loads.end(), scene_->prepare_loads.begin(),
+                                 scene_->prepare_loads.end());
             if (deck_.prepare.gravity)
                 for (int a = 0; a < Dim; ++a) scene_->gravity[a] = (*deck_.prepare.gravity)[a];
             scene_->mass_damping = deck_.prepare.mass_damping;
@@ -184,12 +186,14 @@ class Run {
             for (std::int64_t i = 0; i < steps && !stop_requested; ++i) {
                 kick(*scene_, now_);
                 drift(*scene_, now_);
-                progress.update(now_.step, now_.time, 0.0);
+                now_.time = 0.0;
+                progress.update(now_.step, now_.dt * static_cast<double>(now_.step), 0.0);
             }
             progress.finish();
             scene_->gravity = gravity;
             scene_->mass_damping = damping;
             scene_->friction = friction;
+            scene_->loads = loads;
             scene_->walls = walls;
             scene_->wall_velocity = wall_velocity;
         }
@@ -238,7 +242,11 @@ class Run {
     void write_rows(Observer<Dim>& observer, GrainTracker<Dim>& tracker, double elapsed) {
         const HistoryRow row = observer.history(*scene_, now_);
         writer_.add_history(row);
-        for (const GrainRow& grain : tracker.rows(*scene_, now_, elapsed)) writer_.add_grain(grain);
+        if (record_) record_->history.push_back(row);
+        for (const GrainRow& grain : tracker.rows(*scene_, now_, elapsed)) {
+            writer_.add_grain(grain);
+            if (record_) record_->grains.push_back(grain);
+        }
         summary_.energy = row.energy;
         summary_.residual_relative = observer.residual_relative();
         summary_.momentum_error_linear = observer.momentum_error_linear();
@@ -291,6 +299,7 @@ class Run {
                                 summary_.outcome, summary_.steps, summary_.wall_seconds,
                                 summary_.ns_per_particle_step, summary_.state_hash));
         writer_.finish(summary_);
+        if (record_) record_->summary = summary_;
     }
 
     const Deck& deck_;
@@ -300,16 +309,17 @@ class Run {
     StepContext<Dim> now_;
     std::int64_t n_steps_ = 0;
     Summary summary_;
+    RunRecord* record_ = nullptr;
     std::map<std::string, std::int64_t> warnings_;
     Clock::time_point start_ = Clock::now();
 };
 
 }  // namespace
 
-RunOutcome run_deck(const Deck& deck, const RunOptions& options, Summary* summary) {
+RunOutcome run_deck(const Deck& deck, const RunOptions& options, RunRecord* record) {
     if (options.threads > 0) parallel::set_threads(options.threads);
-    if (deck.dimension == 2) return Run<2>(deck, options).go(summary);
-    return Run<3>(deck, options).go(summary);
+    if (deck.dimension == 2) return Run<2>(deck, options).go(record);
+    return Run<3>(deck, options).go(record);
 }
 
 }  // namespace quern

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "src/deck/deck.hpp"
 #include "src/results/records.hpp"
@@ -14,10 +15,17 @@ struct RunOptions {
     bool progress_terminal = false;  ///< a progress line rewritten in place on stderr
 };
 
+/// What a run reports, for programs that go on with its numbers.
+struct RunRecord {
+    Summary summary;
+    std::vector<HistoryRow> history;
+    std::vector<GrainRow> grains;  ///< as in grains.csv: by time, tracked grains in the deck's order
+};
+
 enum class RunOutcome { done, interrupted };
 
 /// Runs a deck and writes its results. Throws InputError, SimulationError (after writing what there is) or
-/// OutputError. SIGINT and SIGTERM end the run cleanly.
-RunOutcome run_deck(const Deck& deck, const RunOptions& options, Summary* summary = nullptr);
+/// OutputError. `record` is filled if given. SIGINT and SIGTERM end the run cleanly.
+RunOutcome run_deck(const Deck& deck, const RunOptions& options, RunRecord* record = nullptr);
 
 }  // namespace quern

@@ -218,14 +218,18 @@ void add_walls(const Deck& deck, Scene<Dim>& scene) {
 
 template <int Dim>
 void add_loads_and_constraints(const Deck& deck, Scene<Dim>& scene) {
-    for (const LoadDeck& from : deck.loads) {
-        Load<Dim> load;
-        load.particles = select_particles(scene, from.grains, from.region);
-        require_particles(from.place, load.particles);
-        load.per_mass = from.per_mass;
-        for (int k = 0; k < Dim; ++k) load.value[k] = from.value[k];
-        scene.loads.push_back(std::move(load));
-    }
+    const auto add = [&](const std::vector<LoadDeck>& from_deck, std::vector<Load<Dim>>& loads) {
+        for (const LoadDeck& from : from_deck) {
+            Load<Dim> load;
+            load.particles = select_particles(scene, from.grains, from.region);
+            require_particles(from.place, load.particles);
+            load.per_mass = from.per_mass;
+            for (int k = 0; k < Dim; ++k) load.value[k] = from.value[k];
+            loads.push_back(std::move(load));
+        }
+    };
+    add(deck.loads, scene.loads);
+    add(deck.prepare.loads, scene.prepare_loads);
     for (const ConstraintDeck& from : deck.constraints) {
         Constraint<Dim> constraint;
         constraint.particles = select_particles(scene, from.grains, from.region);
@@ -301,7 +305,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     StepArrays<Dim>& arrays = scene->arrays;
     arrays.internal.resize(n);
     arrays.v_before.resize(n);
-    if (!deck.loads.empty()) arrays.load.resize(n);
+    if (!deck.loads.empty() || !deck.prepare.loads.empty()) arrays.load.resize(n);
     if (std::any_of(scene->groups.begin(), scene->groups.end(),
                     [](const auto& group) { return group.damped; }))
         arrays.damping.assign(n, Vec<Dim>::Zero());

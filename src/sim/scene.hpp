@@ -71,6 +71,7 @@ struct Scene {
     Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
     double mass_damping = 0.0;            ///< [1/s]
     std::vector<Load<Dim>> loads;
+    std::vector<Load<Dim>> prepare_loads;  ///< added to `loads` before the clock starts
     std::vector<Constraint<Dim>> constraints;
     StepArrays<Dim> arrays;
 
