@@ -95,7 +95,7 @@ materials:
 shapes:
   ball: {type: sphere, filling: rings, radius: 1 cm, spacing: 1 mm}
   brick: {type: box, size: [1 cm, 2 cm, 3 cm], spacing: 2 mm}
-grid: {origin: [-1, -1, -1], extent: [2, 2.05, 2], spacing: 0.1, periodic: [x, z]}
+grid: {origin: [-1, -1, -1], extent: [2, 2.05, 2], spacing: 0.1, periodic: [x]}
 walls:
   - {side: y+, friction: ${mu}, velocity: [0, '-${speed}*${ramp}', 0]}
   - {name: slope, point: [0, -0.9, 0], normal: [0, 3, 4]}

@@ -49,7 +49,7 @@ TEST_CASE("read_deck: every key arrives in SI units") {
     CHECK(deck.shapes[0].spacing == 0.001);
     CHECK(deck.shapes[1].size == Numbers3{0.01, 0.02, 0.03});
 
-    CHECK(deck.grid.periodic == std::array<bool, 3>{true, false, true});
+    CHECK(deck.grid.periodic == std::array<bool, 3>{true, false, false});
     CHECK(deck.grid.extent[0] == Approx(2.0).epsilon(1e-15));
     CHECK(deck.grid.extent[1] == Approx(2.1).epsilon(1e-15));  // rounded up to whole cells
 
