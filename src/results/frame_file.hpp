@@ -4,7 +4,8 @@
 //   /grain [n]  /volume [n]
 //
 // F frames, n particles, d = 2 or 3. One chunk holds one frame of at most 65536 particles, shuffled and
-// deflated. /time grows last, so a run that died while writing leaves its last frame uncounted.
+// deflated; /time and /step are left plain. /time grows last, after a flush: a frame that a killed run has
+// not finished is not counted.
 #pragma once
 
 #include <cstdint>

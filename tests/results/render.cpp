@@ -116,11 +116,30 @@ TEST_CASE("Render: discs lie where the particles are") {
             const unsigned char* p = &picture.rgb[3 * static_cast<std::size_t>(j * picture.width + i)];
             if (p[0] > 240 && p[1] > 220 && p[2] < 60) n += 1, x += i, y += j;
         }
+    REQUIRE(n > 0);
     // The plot: 150 x 150 pixels for 1.06 m at (97.5, 75), VTK's rows from the bottom.
     const double scale = 150 / 1.06;
     CHECK(x / n + 0.5 == doctest::Approx(97.5 + 0.28 * scale).epsilon(0.01));
     CHECK(y / n + 0.5 == doctest::Approx(75 + 0.78 * scale).epsilon(0.01));
     CHECK(n == doctest::Approx(0.01 * scale * scale).epsilon(0.15));
+}
+
+TEST_CASE("Render: no stress is grey, in the middle of the colours") {
+    const ScratchDirectory scratch;
+    ResultWriter writer({.directory = scratch.path("run"), .dimension = 2, .domain = {0, 0, 1, 1}});
+    Frame frame;
+    frame.position = {0.5, 0.5, 0.8, 0.8};
+    frame.velocity = {0, 0, 0, 0};
+    frame.damage = {0, 0};
+    frame.stress = {0, 0, 0, 0, 1e5, 0, 0, 0};
+    frame.grain = {0, 1};
+    frame.volume = {0.01, 0.01};
+    writer.add_frame(frame);
+    writer.finish({});
+    const Picture picture = draw(scratch, "stress_xx");
+    const unsigned char* middle = &picture.rgb[3 * static_cast<std::size_t>(150 * picture.width + 172)];
+    CHECK(middle[0] < 240);  // measured 221, white is 255
+    CHECK(std::abs(middle[0] - middle[2]) < 10);
 }
 
 TEST_CASE("Render: all frames are numbered and share their colours") {

@@ -115,28 +115,30 @@ TEST_CASE("ResultWriter: a run that dies leaves files that can be read") {
                          scratch.path("run/results.xdmf")));
 }
 
-TEST_CASE("FrameFileWriter: a run killed while it writes leaves every counted frame readable") {
+TEST_CASE("FrameFileWriter: a run killed while it writes leaves every finished frame readable") {
     const ScratchDirectory scratch;
     const std::string path = scratch.path("results.h5");
-    for (const std::size_t least : {1, 3, 10, 20, 40}) {
-        std::filesystem::remove(path);
+    for (const std::size_t n_finished : {1, 3, 10, 20, 40}) {
+        int finished[2];
+        REQUIRE(pipe(finished) == 0);
         const pid_t child = fork();
         if (child == 0) {
             FrameFileWriter writer(path, 2, "", {});
-            for (int i = 0;; ++i) writer.add(make_sample_frame(2, i));
-        }
-        const auto n_frames = [&]() -> std::size_t {
-            try {
-                return FrameFileReader(path).n_frames();
-            } catch (const InputError&) {
-                return 0;  // caught in the middle of a write
+            for (int i = 0;; ++i) {
+                writer.add(make_sample_frame(2, i));
+                if (write(finished[1], "", 1) != 1) _exit(1);
             }
-        };
-        while (n_frames() < least && waitpid(child, nullptr, WNOHANG) == 0) usleep(1000);
+        }
+        close(finished[1]);
+        char byte;
+        for (std::size_t i = 0; i < n_finished; ++i) REQUIRE(read(finished[0], &byte, 1) == 1);
+        usleep(static_cast<useconds_t>(137 * n_finished % 1000));  // into the writing of a later frame
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
+        close(finished[0]);
+
         const FrameFileReader reader(path);
-        CHECK(reader.n_frames() >= least);
+        CHECK(reader.n_frames() >= n_finished);
         for (std::size_t i = 0; i < reader.n_frames(); ++i) {
             const Frame frame = reader.read(i), wrote = make_sample_frame(2, static_cast<int>(i));
             REQUIRE(frame.step == wrote.step);
