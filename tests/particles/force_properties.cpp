@@ -165,7 +165,7 @@ TEST_CASE("Internal forces: grains of several sizes and models on several thread
     const auto run = [&](int n_threads) {
         const int before = parallel::n_threads();
         parallel::set_threads(n_threads);
-        std::vector<Field<2>> f(64);
+        std::vector<Field<2>> f(4000);
         parallel::for_each(f.size(), [&](std::size_t g) {
             const std::size_t m = g * 7 % 3;
             const std::span<const std::uint8_t> mask =
