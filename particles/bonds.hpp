@@ -24,7 +24,7 @@ struct Neighbor {
 ///     lambda  = 1, or with SurfaceCorrection::volume  2 V0 / (Vf_i + Vf_j)
 ///     Vf_i    = sum_j V_j, family volume; V0 that of a full family              [m^2 | m^3]
 ///
-/// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method" (after Bobaru et al. 2017).
+/// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method".
 /// Differs: V0 is the mean over the bulk families of the shape itself, so that a lattice has lambda = 1
 /// inside. Bulk: at least one horizon below the true surface, by Shape::surface. A shape too thin to have
 /// such a node falls back on the integrals over the ball.
