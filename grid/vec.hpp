@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
-#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdint>

@@ -17,7 +17,7 @@ namespace quern {
 /// The material must say so; K alone sets the stiffness.
 ///
 /// Source: Silling, J. Mech. Phys. Solids 48 (2000) 175; Silling & Askari, Comput. Struct. 83 (2005) 1526,
-/// eq. 27, whose constant micro-modulus per stretch (f = c s) is w = 1/r here. Differs: any influence
+/// whose constant micro-modulus per stretch (f = c s) is w = 1/r here. Differs: any influence
 /// function.
 ///
 /// Calibration. `discrete`: m is the mean of sum w xi^2 V over the bulk families of the shape (bonds.hpp), so

@@ -50,7 +50,7 @@ class BondNetwork {
     ///
     ///     F = (sum w y (x) xi V_j) (sum w xi (x) xi V_j)^-1
     ///
-    /// (Silling et al., J. Elasticity 88 (2007) 151, eq. 134). For output only: the force law is not this
+    /// (Silling et al., J. Elasticity 88 (2007) 151). For output only: the force law is not this
     /// one. Zero where the intact bonds no longer span space and so tell no gradient.
     void compute_stress(const GrainView<Dim>& grain, std::span<double> stress) const;
 

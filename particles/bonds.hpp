@@ -24,10 +24,16 @@ struct Neighbor {
 ///     lambda  = 1, or with SurfaceCorrection::volume  2 V0 / (Vf_i + Vf_j)
 ///     Vf_i    = sum_j V_j, family volume; V0 that of a full family              [m^2 | m^3]
 ///
-/// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method" (after Bobaru et al. 2017).
+/// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method".
 /// Differs: V0 is the mean over the bulk families of the shape itself, so that a lattice has lambda = 1
 /// inside. Bulk: at least one horizon below the true surface, by Shape::surface. A shape too thin to have
 /// such a node falls back on the integrals over the ball.
+///
+/// What lambda does, measured (plane, cone, horizon 3.015 dx; tests/particles/force_elasticity.cpp): equal
+/// strains of a block of 20 x 20 nodes miss 12 % of their bond-based energy without it and 0.7 % with it; a
+/// strip 16 nodes wide pulled along its faces is 3.6 % soft without and 5.9 % stiff with it (the bonds a face
+/// lacks point mostly across the pull). Lps, which normalises every family by itself, is 6.1 % stiff there,
+/// and 7.2 % with lambda: the correction is for bond-based materials.
 template <int Dim>
 struct Bonds {
     double horizon = 0.0;             ///< [m]

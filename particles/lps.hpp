@@ -21,7 +21,7 @@ namespace quern {
 /// W is Kn theta^2/2 plus the deviatoric energy a/(2m) sum w (e - theta xi/n)^2 V written out. With broken
 /// bonds it is this form, not the deviatoric one, of which t is the exact gradient; it stays >= Kn theta^2/2.
 ///
-/// Source: Silling et al., J. Elasticity 88 (2007) 151, eqs 100-109 (n = 3); Le, Chan, Schwartz, Int. J.
+/// Source: Silling et al., J. Elasticity 88 (2007) 151 (n = 3); Le, Chan, Schwartz, Int. J.
 /// Numer. Meth. Eng. 98 (2014) 547 (n = 2). Differs: one form of the constants for both n; m may be
 /// calibrated.
 ///

@@ -16,7 +16,7 @@ namespace quern {
 /// Iterates until the residual is below 0.2 % of the largest Ritz value `top` (0.1 % of omega), at most 200
 /// times, from a fixed pseudo-random vector. The residual bounds the eigenvalue that has been found; the
 /// margin is for one close above it that has not (seen: 0.27 % with a residual of 1 %, none with this one).
-/// Source: Golub & Van Loan, Matrix Computations, 4th ed., 10.1 (Lanczos) and 10.1.4 (residual bound).
+/// Source: Golub & Van Loan, Matrix Computations, 4th ed., ch. 10.
 /// Differs from plain power iteration, which needs several times as many products on the crowded top of the
 /// spectrum.
 double max_frequency(
@@ -28,7 +28,7 @@ double max_frequency(
 ///
 ///     dt = 2/omega (sqrt(1 + zeta^2) - zeta),    zeta = tau omega/2
 ///
-/// Source: Belytschko, Liu, Moran, Nonlinear Finite Elements, 2nd ed., eq. 6.2.15 (stiffness-proportional).
+/// Source: Belytschko, Liu, Moran, Nonlinear Finite Elements, ch. 6 (stiffness-proportional damping).
 double critical_step(double omega, double bond_damping);
 
 }  // namespace quern

@@ -1,4 +1,5 @@
 // What every internal-force model must satisfy, whatever its law.
+#include "grid/parallel.hpp"
 #include "tests/particles/force_cases.hpp"
 
 using namespace quern;
@@ -148,4 +149,37 @@ TEST_CASE("Internal forces: the linearised operator is their derivative at rest,
         const double one = dot(linear, other), two = dot(linear_forces(model, other), u);
         CHECK(std::abs(one - two) < 1e-12 * std::abs(one));  // measured 1.5e-14, bound 1e-12
     });
+}
+
+TEST_CASE("Internal forces: grains of several sizes and models on several threads give the bits of one") {
+    const Shape<2> small = make_test_shape<2>(), large = make_round<2>(0.08, 0.01);
+    Material springs = make_material(ForceModel::bond_based, PlaneState::strain, 2);
+    springs.bond_damping = 1e-4;
+    const std::vector<PeridynamicModel<2>> models = {
+        make_model(small, make_material(ForceModel::lps, PlaneState::strain, 2)), make_model(large, springs),
+        make_model(large, make_material(ForceModel::lps, PlaneState::stress, 2))};
+    const std::vector<Field<2>> x = {make_deformed(small, 1.0), make_deformed(large, 1.0),
+                                     make_deformed(large, 1.0)};
+    std::vector<std::vector<std::uint8_t>> alive;
+    for (const auto& model : models) alive.push_back(make_broken(count_bonds(model)));
+    const auto run = [&](int n_threads) {
+        const int before = parallel::n_threads();
+        parallel::set_threads(n_threads);
+        std::vector<Field<2>> f(4000);
+        parallel::for_each(f.size(), [&](std::size_t g) {
+            const std::size_t m = g * 7 % 3;
+            const std::span<const std::uint8_t> mask =
+                g % 2 == 0 ? std::span<const std::uint8_t>() : alive[m];
+            f[g] = forces(models[m], {1.0 + 0.001 * static_cast<double>(g), x[m], x[m], mask});
+            std::visit(
+                [&](const auto& law) {
+                    law.add_damping_forces({1.0, x[m], x[m], mask}, f[g]);
+                },
+                models[m]);
+        });
+        parallel::set_threads(before);
+        return f;
+    };
+    const std::vector<Field<2>> one = run(1), four = run(4);
+    for (std::size_t g = 0; g < one.size(); ++g) REQUIRE(largest_difference(one[g], four[g]) == 0.0);
 }
