@@ -68,12 +68,11 @@ struct MeshSurface {
 ///     k_e   = 2 nu.(x - x_e)/|x - x_e|^2                   normal curvature along edge e [1/m]
 ///
 /// Smooth normals: Max, Weights for computing vertex normals from facet normals, J. Graphics Tools 4 (1999),
-/// eq 2, exact on a sphere; at corners the angles count (Thuermer and Wuethrich 1998), so that an edge of a
-/// box has its bisector however its faces are cut. The mean of the normal curvature over all directions is
-/// the mean curvature (Euler); on a sphere every k_e is 1/R. On other smooth
-/// surfaces the normals converge (second order) while kappa keeps a scatter of about 8 % rms, measured on an
-/// ellipsoid of axes 2 : 1.5 : 1. Nodes of an edge whose triangles meet at 30
-/// degrees or more are corners: kappa = 0.
+/// exact on a sphere. At corners the angles count (Thuermer and Wuethrich, same journal 3, 1998), so that an
+/// edge of a box has its bisector however its faces are cut. The mean of the normal curvature over all
+/// directions is the mean curvature (Euler); on a sphere every k_e is 1/R. On other smooth surfaces the
+/// normals converge (second order) while kappa keeps a scatter of about 8 % rms, measured on an ellipsoid of
+/// axes 2 : 1.5 : 1. Nodes of an edge whose triangles meet at 30 degrees or more are corners: kappa = 0.
 template <int Dim>
 MeshSurface<Dim> fit_surface(const ElementMesh<Dim>& mesh);
 
