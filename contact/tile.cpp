@@ -11,7 +11,9 @@ constexpr double fit_regularisation = 1e-3;  ///< variance [h^2] below which a s
 constexpr double flat_on_flat = 0.2;         ///< curvature [1/h] that centres two flat faces
 constexpr double max_slope = 0.5;
 constexpr double max_interface_distance = 0.75;  ///< from the node [h]
-constexpr double corner_filter = 0.6;  ///< least cosine between a particle's normal and the contact's
+/// Least cosine between a particle's normal and that of the contact, for cornered grains: keeps the corners
+/// of a box (0.577), drops the next face of a hexagon (0.5).
+constexpr double corner_filter = 0.55;
 
 /// y(s) = c0 + c1.s + c2 |s|^2, in units of h.
 template <int Dim>
