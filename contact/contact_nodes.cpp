@@ -17,7 +17,7 @@ constexpr double degenerate_inertia = 1e-3;
 
 bool invert_inertia(const Mat<2>& second, double m, double h, Eigen::Matrix<double, 1, 1>& Y) {
     const double inertia = second.trace();
-    const bool usable = inertia >= degenerate_inertia * m * h * h;
+    const bool usable = m > 0.0 && inertia >= degenerate_inertia * m * h * h;
     Y(0, 0) = usable ? 1.0 / inertia : 0.0;
     return usable;
 }
@@ -26,7 +26,7 @@ bool invert_inertia(const Mat<3>& second, double m, double h, Mat<3>& Y) {
     const Mat<3> inertia = second.trace() * Mat<3>::Identity() - second;
     Eigen::SelfAdjointEigenSolver<Mat<3>> eigen;
     eigen.computeDirect(inertia, Eigen::EigenvaluesOnly);
-    const bool usable = eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
+    const bool usable = m > 0.0 && eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
     Y = usable ? Mat<3>(inertia.inverse()) : Mat<3>(Mat<3>::Zero());
     return usable;
 }
