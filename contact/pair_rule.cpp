@@ -19,7 +19,8 @@ double tangential(const Mat<2>& W, const Eigen::Matrix<double, 2, 1>& T) {
 double tangential(const Mat<3>& W, const Eigen::Matrix<double, 3, 2>& T) {
     const Mat<2> A = T.transpose() * W * T;
     const double mean = 0.5 * (A(0, 0) + A(1, 1)), half = 0.5 * (A(0, 0) - A(1, 1));
-    return mean + std::sqrt(half * half + A(0, 1) * A(1, 0));
+    const double off = 0.5 * (A(0, 1) + A(1, 0));  // equal but for rounding, which must not reach the root
+    return mean + std::sqrt(half * half + off * off);
 }
 
 template <int Dim>
@@ -92,7 +93,7 @@ void PairRule<Dim>::make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>&
         const auto [first, last] = nodes.slots_of_grain(static_cast<int>(g));
         for (int s = first; s < last && options_.coupling == GridCoupling::impulse && !options_.rotation; ++s)
             nodes.slots()[s].rotates = false;
-        if (first < last && scene.grains[g].shape->cornered)
+        if (first < last)
             rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
     });
     const std::size_t n_nodes = static_cast<std::size_t>(nodes.n_nodes());
