@@ -18,11 +18,11 @@
 //     g = h q(s*),   x_c = x_a + h T s* + h (y_A(s*) + y_B(s*))/2 n
 //
 // and the normal is turned by the mean slope there, m = (c1_A + c1_B)/2 + (c2_A + c2_B) s*, |m| <= 1/2, once.
-// delta_p: reference distance of the particle from the true surface [m]; nu_p: its reference normal, turned with
-// the grain (for grains with corners the contact normal, and only particles whose nu_p is within 57 degrees of
-// it); kappa: reference curvature [1/m], in 3D the mean of the two (exact for spheres and planes). Two flat faces
-// have no closest point; q2 + 0.2 then keeps s* near the middle of the cell. A wall is a plane that keeps its
-// normal.
+// delta_p: reference distance of the particle from the true surface [m]; nu_p: its reference normal, turned
+// with the grain (for grains with corners the contact normal, and only particles whose nu_p is within 57
+// degrees of it); kappa: reference curvature [1/m], in 3D the mean of the two (exact for spheres and planes).
+// Two flat faces have no closest point; q2 + 0.2 then keeps s* near the middle of the cell. A wall is a plane
+// that keeps its normal.
 #pragma once
 
 #include <optional>
