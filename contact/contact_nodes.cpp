@@ -17,7 +17,7 @@ constexpr double degenerate_inertia = 1e-3;
 
 bool invert_inertia(const Mat<2>& second, double m, double h, Eigen::Matrix<double, 1, 1>& Y) {
     const double inertia = second.trace();
-    const bool usable = inertia >= degenerate_inertia * m * h * h;
+    const bool usable = m > 0.0 && inertia >= degenerate_inertia * m * h * h;
     Y(0, 0) = usable ? 1.0 / inertia : 0.0;
     return usable;
 }
@@ -26,7 +26,7 @@ bool invert_inertia(const Mat<3>& second, double m, double h, Mat<3>& Y) {
     const Mat<3> inertia = second.trace() * Mat<3>::Identity() - second;
     Eigen::SelfAdjointEigenSolver<Mat<3>> eigen;
     eigen.computeDirect(inertia, Eigen::EigenvaluesOnly);
-    const bool usable = eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
+    const bool usable = m > 0.0 && eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
     Y = usable ? Mat<3>(inertia.inverse()) : Mat<3>(Mat<3>::Zero());
     return usable;
 }
@@ -177,6 +177,22 @@ void ContactNodes<Dim>::number_nodes() {
     });
 }
 
+/// Particles in cells near a slot, in their order.
+template <int Dim>
+void ContactNodes<Dim>::find_near_particles(const ContactScene<Dim>& scene, const Grain<Dim>& grain,
+                                            const Window& window, Scratch& scratch) const {
+    const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
+    std::size_t next_surface = 0;
+    scratch.near.clear();
+    for (int i = 0; i < grain.count; ++i) {
+        const bool on_surface = next_surface < surface.size() && surface[next_surface].node == i;
+        const int surface_index = on_surface ? static_cast<int>(next_surface++) : -1;
+        const Vec<Dim> in_cells = grid_.in_cells(scene.x[grain.first + i]);
+        if (scratch.near_cell[window.local(CartesianGrid<Dim>::cell(in_cells))])
+            scratch.near.push_back({grain.first + i, surface_index, in_cells});
+    }
+}
+
 template <int Dim>
 void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratch& scratch) {
     const auto [first, last] = slots_of_grain(g);
@@ -185,22 +201,35 @@ void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratc
     const Window& window = windows_[g];
     const double h = grid_.h();
     scratch.window.assign(static_cast<std::size_t>(window.n()), -1);
+    scratch.near_cell.assign(static_cast<std::size_t>(window.n()), 0);
     for (int s = first; s < last; ++s) {
-        scratch.window[window.local(slots_[s].index)] = s - first;
-        slots_[s].n_support = 0;
-        slots_[s].volume = 0.0;
-        slots_[s].gradient.setZero();
+        Slot<Dim>& slot = slots_[s];
+        scratch.window[window.local(slot.index)] = s - first;
+        slot.n_support = 0;
+        slot.volume = 0.0;
+        slot.gradient.setZero();
+        // Cells whose quadratic stencils can reach the node: up to two below it, one above.
+        for (int k = 0; k < power(4, Dim); ++k) {
+            IntVec<Dim> cell;
+            bool inside = true;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= 4) {
+                cell[a] = slot.index[a] - 2 + rest % 4;
+                inside = inside && cell[a] >= window.lo[a] && cell[a] < window.lo[a] + window.size[a];
+            }
+            if (inside) scratch.near_cell[window.local(cell)] = 1;
+        }
     }
-    for (int p = grain.first; p < grain.first + grain.count; ++p) {
-        const Vec<Dim> c = grid_.in_cells(scene.x[p]);
-        const QuadraticStencil<Dim> stencil(c);
-        const IntVec<Dim> cell = CartesianGrid<Dim>::cell(c);
+    find_near_particles(scene, grain, window, scratch);
+    for (const NearParticle<Dim>& near : scratch.near) {
+        const QuadraticStencil<Dim> stencil(near.in_cells);
+        const IntVec<Dim> cell = CartesianGrid<Dim>::cell(near.in_cells);
+        const double volume = scene.volume[near.particle];
         for (int k = 0; k < stencil.size; ++k) {
             const IntVec<Dim> node = stencil.node(k);
             const int local = scratch.window[window.local(node)];
             if (local < 0) continue;
             Slot<Dim>& slot = slots_[first + local];
-            slot.gradient -= scene.volume[p] / h * stencil.gradient(k);  // by the node: minus by the point
+            slot.gradient -= volume / h * stencil.gradient(k);  // by the node: minus by the point
             const IntVec<Dim> offset = node - cell;
             if (offset.minCoeff() >= 0 && offset.maxCoeff() <= 1) ++slot.n_support;
         }
@@ -213,22 +242,17 @@ void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratc
     }
     std::vector<Support<Dim>>& support = support_[g];
     support.resize(static_cast<std::size_t>(total));
-    std::size_t next_surface = 0;
-    const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
-    for (int i = 0; i < grain.count; ++i) {
-        const bool on_surface = next_surface < surface.size() && surface[next_surface].node == i;
-        const int surface_index = on_surface ? static_cast<int>(next_surface++) : -1;
-        const int p = grain.first + i;
-        const LinearStencil<Dim> stencil(grid_.in_cells(scene.x[p]));
+    for (const NearParticle<Dim>& near : scratch.near) {
+        const LinearStencil<Dim> stencil(near.in_cells);
+        const double weight = near.surface >= 0 ? 1.0 : options_.interior_weight;
         for (int k = 0; k < stencil.size; ++k) {
             const int local = scratch.window[window.local(stencil.node(k))];
             if (local < 0) continue;
             Slot<Dim>& slot = slots_[first + local];
-            const double N = stencil.N[k];
-            const double w = on_surface ? N : options_.interior_weight * N;
-            support[scratch.count[local]++] = {p, surface_index, N, w,
-                                               scene.x[p] - grid_.node_position(slot.index)};
-            slot.volume += N * scene.volume[p];
+            support[scratch.count[local]++] = {near.particle, near.surface, stencil.N[k],
+                                               weight * stencil.N[k],
+                                               scene.x[near.particle] - grid_.node_position(slot.index)};
+            slot.volume += stencil.N[k] * scene.volume[near.particle];
         }
     }
     int begin = 0;

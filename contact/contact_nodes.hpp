@@ -41,6 +41,13 @@ struct Slot {
     Vec<Dim> gradient;  ///< sum V_p grad_a B(x_a - x_p), quadratic B-spline: points into the grain
 };
 
+/// A particle that some slot of its grain may need.
+template <int Dim>
+struct NearParticle {
+    int particle, surface;
+    Vec<Dim> in_cells;
+};
+
 /// Options of the search, fixed for a run.
 struct ContactNodeOptions {
     bool all_nodes = false;      ///< every node of every grain is kept (flip coupling)
@@ -88,13 +95,16 @@ class ContactNodes {
         int n() const { return size.prod(); }
     };
     struct Scratch {  ///< of one thread
-        std::vector<int> window, base, count;
-        std::vector<Support<Dim>> support;
+        std::vector<int> window, count;
+        std::vector<std::uint8_t> near_cell;
+        std::vector<NearParticle<Dim>> near;
     };
 
     void mark_touched(const ContactScene<Dim>& scene);
     void select(const ContactScene<Dim>& scene);
     void number_nodes();
+    void find_near_particles(const ContactScene<Dim>& scene, const Grain<Dim>& grain, const Window& window,
+                             Scratch& scratch) const;
     void fill_slots(const ContactScene<Dim>& scene, int grain, Scratch& scratch);
     IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
         IntVec<Dim> w;

@@ -19,7 +19,8 @@ double tangential(const Mat<2>& W, const Eigen::Matrix<double, 2, 1>& T) {
 double tangential(const Mat<3>& W, const Eigen::Matrix<double, 3, 2>& T) {
     const Mat<2> A = T.transpose() * W * T;
     const double mean = 0.5 * (A(0, 0) + A(1, 1)), half = 0.5 * (A(0, 0) - A(1, 1));
-    return mean + std::sqrt(half * half + A(0, 1) * A(1, 0));
+    const double off = 0.5 * (A(0, 1) + A(1, 0));  // equal but for rounding, which must not reach the root
+    return mean + std::sqrt(half * half + off * off);
 }
 
 template <int Dim>

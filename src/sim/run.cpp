@@ -103,16 +103,20 @@ class Run {
         record_ = record;
         const StopSignals signals;
         host_line();
-        prepare();
         RunOutcome outcome = RunOutcome::done;
         try {
+            prepare();
             outcome = march();
             summary_.outcome = outcome == RunOutcome::done ? "done" : "interrupted";
         } catch (const SimulationError& error) {
-            summary_.outcome = fmt::format("failed: {}", error.what());
+            std::string message = error.what();
+            if (now_.dt > summary_.stable_step)
+                message += fmt::format(" (time.step {:.4g} s is above the stable step {:.4g} s)", now_.dt,
+                                       summary_.stable_step);
+            summary_.outcome = "failed: " + message;
             writer_.log(summary_.outcome);
             close();
-            throw;
+            throw SimulationError(message);
         }
         close();
         return outcome;

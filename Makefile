@@ -1,0 +1,43 @@
+# Everything a user needs, in front of the CMake presets. `make help` lists the targets.
+PRESET ?= release
+BUILD  := build/$(PRESET)
+JOBS   ?= $(shell nproc)
+
+.PHONY: all build packages demo test bench clang debug asan tsan format check-format clean help
+
+all: build            ## build (PRESET=release): build/release/quern
+
+packages:             ## install missing Debian packages (as root or with sudo)
+	@sh .ci/packages
+
+build: packages
+	@cmake --preset $(PRESET) > build.log 2>&1 || { cat build.log; exit 1; }
+	@rm -f build.log
+	cmake --build --preset $(PRESET) -j $(JOBS)
+
+demo: build           ## the disk on the inclined plane: run, pictures, errors against the rigid disk
+	$(BUILD)/quern run examples/inclined_plane/disk.yaml -o out/demo
+	$(BUILD)/quern render out/demo -o out/demo/disk.png --field von_mises
+	$(BUILD)/inclined_plane_report -o out/inclined_plane
+	@echo "Pictures: out/demo/disk.png and out/inclined_plane/*.png"
+
+test: build           ## build and run all tests
+	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
+
+bench: build          ## ns per bond, per particle-step and per stage
+	$(BUILD)/quern_bench -o out/bench
+
+clang debug asan tsan:  ## build with another preset
+	$(MAKE) build PRESET=$@
+
+format:               ## clang-format everything
+	clang-format-14 -i $$(git ls-files '*.cpp' '*.hpp')
+
+check-format:         ## fail if clang-format would change a file
+	clang-format-14 --dry-run -Werror $$(git ls-files '*.cpp' '*.hpp')
+
+clean:                ## remove what was built
+	rm -rf build out
+
+help:
+	@sed -n 's/^\([a-z -]*\):.*## /\1\t/p' $(MAKEFILE_LIST)
