@@ -24,12 +24,26 @@ struct Profile {
     double c2 = 0.0;
 
     double operator()(const Tangential& s) const { return c0 + c1.dot(s) + c2 * s.squaredNorm(); }
+
+    /// Where it is level, as far as two cells away; nothing for a plane.
+    std::optional<Tangential> apex() const {
+        if (c2 == 0.0) return std::nullopt;
+        return Tangential((-c1 / (2.0 * c2)).cwiseMax(-2.0).cwiseMin(2.0));
+    }
 };
 
+/// What a circle of curvature k drops at distance u from its apex beyond the parabola k u^2/2.
+double beyond_parabola(double k, double u) {
+    const double z = std::min(k * k * u * u, 0.9);
+    return k > 0.0 ? (1.0 - std::sqrt(1.0 - z) - 0.5 * z) / k : 0.0;
+}
+
+/// `apex`: where the profile of an earlier fit is level, if there was one.
 template <int Dim>
 std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const Vec<Dim>& n,
                                 const Eigen::Matrix<double, Dim, Dim - 1>& T, double h,
-                                const GridContactOptions& options) {
+                                const GridContactOptions& options,
+                                const std::optional<typename Profile<Dim>::Tangential>& apex) {
     using Tangential = typename Profile<Dim>::Tangential;
     const Slot<Dim>& slot = *side.slot;
     const Grain<Dim>& grain = *side.grain;
@@ -41,9 +55,13 @@ std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const V
         const Support<Dim>& e = slot.support[k];
         if (e.surface < 0) continue;
         const SurfacePoint<Dim>& point = grain.shape->surface[e.surface];
-        if (grain.shape->cornered && sigma * n.dot(*side.rotation * point.nu) < corner_filter) continue;
-        const Tangential s = T.transpose() * e.d / h;
-        const double y = (n.dot(e.d) + sigma * point.delta * grain.scale) / h;
+        const Vec<Dim> nu = *side.rotation * point.nu;
+        if (grain.shape->cornered && sigma * n.dot(nu) < corner_filter) continue;
+        // The nearest point of the true surface; at a corner, the face that the contact is with.
+        const Vec<Dim> d = e.d + point.delta * grain.scale * (grain.shape->cornered ? Vec<Dim>(sigma * n) : nu);
+        const Tangential s = T.transpose() * d / h;
+        double y = n.dot(d) / h;
+        if (apex) y += sigma * beyond_parabola(point.kappa / grain.scale * h, (s - *apex).norm());
         S += e.N;
         kappa += e.N * point.kappa;
         s_mean += e.N * s;
@@ -123,10 +141,11 @@ std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& 
     if (!(length > 0.0)) return std::nullopt;
     n /= length;
     Tile<Dim> tile;
+    std::optional<typename Profile<Dim>::Tangential> apex_a, apex_b;
     for (int pass = 0; pass < 2; ++pass) {
         const Eigen::Matrix<double, Dim, Dim - 1> T = tangents<Dim>(n);
-        const auto a = fit<Dim>(A, 1.0, n, T, h, options);
-        const auto b = fit<Dim>(B, -1.0, n, T, h, options);
+        const auto a = fit<Dim>(A, 1.0, n, T, h, options, apex_a);
+        const auto b = fit<Dim>(B, -1.0, n, T, h, options, apex_b);
         if (!a || !b) return std::nullopt;
         typename Profile<Dim>::Tangential s;
         tile = closest_approach<Dim>(*a, *b, n, T, h, s);
@@ -135,6 +154,9 @@ std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& 
             typename Profile<Dim>::Tangential m = 0.5 * (a->c1 + b->c1) + (a->c2 + b->c2) * s;
             m = m.cwiseMax(-max_slope).cwiseMin(max_slope);
             n = (n - T * m).normalized();
+            // Turning the normal moves the level point of both profiles to where they come closest.
+            apex_a = a->c2 != 0.0 ? std::optional(s) : std::nullopt;
+            apex_b = b->c2 != 0.0 ? std::optional(s) : std::nullopt;
         }
     }
     return tile;
@@ -147,7 +169,8 @@ std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>&
     if (A.slot->volume < 0.1 * full) return std::nullopt;
     const Vec<Dim> n = -wall.normal;
     const Eigen::Matrix<double, Dim, Dim - 1> T = tangents<Dim>(n);
-    const auto a = fit<Dim>(A, 1.0, n, T, h, options);
+    auto a = fit<Dim>(A, 1.0, n, T, h, options, std::nullopt);
+    if (a && a->apex()) a = fit<Dim>(A, 1.0, n, T, h, options, a->apex());
     if (!a) return std::nullopt;
     Profile<Dim> plane;
     plane.c0 = wall_offset / h;
