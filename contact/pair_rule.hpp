@@ -66,7 +66,7 @@ class PairRule {
                   ContactReport<Dim>& report) const;
 
     GridContactOptions options_;
-    std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of cornered grains with slots
+    std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of grains with slots
     std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_nodes]
     std::vector<std::vector<int>> colours_;        ///< nodes with rows, by colour
     std::vector<double> change_, total_;           ///< [n_nodes] of one sweep
