@@ -225,7 +225,7 @@ void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratc
             if (local < 0) continue;
             Slot<Dim>& slot = slots_[first + local];
             const double N = stencil.N[k];
-            const double w = on_surface ? N : options_.interior_weight * N;
+            const double w = options_.nodal ? N : (on_surface ? 1.0 : options_.interior_weight) * N * N;
             support[scratch.count[local]++] = {p, surface_index, N, w,
                                                scene.x[p] - grid_.node_position(slot.index)};
             slot.volume += N * scene.volume[p];

@@ -14,7 +14,9 @@
 // and the normal is turned by the mean slope there, m = (c1_A + c1_B)/2 + (c2_A + c2_B) s*, |m| <= 1/2, once.
 // delta_p: reference distance of the particle from the true surface [m]; kappa: reference curvature [1/m],
 // in 3D the mean of the two (exact for spheres and planes). Two flat faces have no closest point; q2 + 0.2
-// then keeps s* near the middle of the cell. A wall is a plane that keeps its normal.
+// then keeps s* near the middle of the cell. Nor do round ones have a sharp one where pressure has flattened
+// them: the point runs to the side that turns in, and rocks a cell whose q2 is small until the step no longer
+// resolves it; so q2 counts as 0.1 at least there. A wall is a plane that keeps its normal.
 #pragma once
 
 #include <optional>
