@@ -12,8 +12,8 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     nodes.all_nodes = options.coupling == GridCoupling::flip;
     nodes.all_particles = options.rule == GridRule::seed;
     nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
-    const bool nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
-    nodes.interior_weight = nodal ? 1.0 : options.interior_weight;
+    nodes.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
+    nodes.interior_weight = options.interior_weight;
     return nodes;
 }
 

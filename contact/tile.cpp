@@ -9,6 +9,7 @@ namespace {
 
 constexpr double fit_regularisation = 1e-3;  ///< variance [h^2] below which a slope is not believed
 constexpr double flat_on_flat = 0.2;         ///< curvature [1/h] that centres two flat faces
+constexpr double flattest = 0.1;             ///< curvature [1/h] below which the closest point rocks
 constexpr double max_slope = 0.5;
 constexpr double max_interface_distance = 0.75;  ///< from the node [h]
 /// Least cosine between a particle's normal and that of the contact, for cornered grains: keeps the corners
@@ -58,7 +59,8 @@ std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const V
         const Vec<Dim> nu = *side.rotation * point.nu;
         if (grain.shape->cornered && sigma * n.dot(nu) < corner_filter) continue;
         // The nearest point of the true surface; at a corner, the face that the contact is with.
-        const Vec<Dim> d = e.d + point.delta * grain.scale * (grain.shape->cornered ? Vec<Dim>(sigma * n) : nu);
+        const Vec<Dim> d =
+            e.d + point.delta * grain.scale * (grain.shape->cornered ? Vec<Dim>(sigma * n) : nu);
         const Tangential s = T.transpose() * d / h;
         double y = n.dot(d) / h;
         if (apex) y += sigma * beyond_parabola(point.kappa / grain.scale * h, (s - *apex).norm());
@@ -97,7 +99,8 @@ Tile<Dim> closest_approach(const Profile<Dim>& A, const Profile<Dim>& B, const V
                            typename Profile<Dim>::Tangential& s) {
     const typename Profile<Dim>::Tangential q1 = B.c1 - A.c1;
     const double q2 = B.c2 - A.c2;
-    const double curvature = A.c2 == 0.0 && B.c2 == 0.0 ? q2 + flat_on_flat : q2;
+    const bool flat = A.c2 == 0.0 && B.c2 == 0.0;
+    const double curvature = flat ? flat_on_flat : (q2 > 0.0 ? std::max(q2, flattest) : q2);
     for (int a = 0; a < Dim - 1; ++a) {
         if (curvature > 0.0)
             s[a] = std::clamp(-q1[a] / (2.0 * curvature), -0.5, 0.5);

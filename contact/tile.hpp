@@ -21,8 +21,10 @@
 // delta_p: reference distance of the particle from the true surface [m]; nu_p: its reference normal, turned
 // with the grain (for grains with corners the contact normal, and only particles whose nu_p is within 57
 // degrees of it); kappa: reference curvature [1/m], in 3D the mean of the two (exact for spheres and planes).
-// Two flat faces have no closest point; q2 + 0.2 then keeps s* near the middle of the cell. A wall is a plane
-// that keeps its normal.
+// Two flat faces have no closest point; q2 = 0.2 then keeps s* near the middle of the cell. Nor do round ones
+// have a sharp one where pressure has flattened them: the point runs to the side that turns in, and rocks a
+// cell whose q2 is small until the step no longer resolves it; so q2 counts as 0.1 at least there. A wall is
+// a plane that keeps its normal.
 #pragma once
 
 #include <optional>
