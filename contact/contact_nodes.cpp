@@ -105,7 +105,11 @@ void ContactNodes<Dim>::select(const ContactScene<Dim>& scene) {
     for (const Window& window : windows_) {
         IntVec<Dim> last = window.lo + window.size - IntVec<Dim>::Ones();
         IntVec<Dim> node = window.lo;
-        const auto advance = [&](int a) { node[a] = std::min(last[a], node[a] + marks_.side); };
+        const auto advance = [&](int a) {  // to the next page: the last one of a periodic axis may be cut
+            const int w = grid_.wrapped(a, node[a]);
+            const int step = std::min(marks_.side - w % marks_.side, grid_.n_nodes()[a] - w);
+            node[a] = std::min(last[a], node[a] + step);
+        };
         if constexpr (Dim == 2) {
             for (node[1] = window.lo[1];; advance(1)) {
                 for (node[0] = window.lo[0];; advance(0)) {
