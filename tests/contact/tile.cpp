@@ -22,7 +22,8 @@ double meet_ball(const Vec<Dim>& x, const Vec<Dim>& n, const Vec<Dim>& c, double
 }
 
 struct Errors {
-    double gap = 0, normal = 0, point = 0;
+    double gap = 0, point = 0;               ///< of all tiles that may touch soon
+    double gap_there = 0, normal_there = 0;  ///< of the tile nearest to the contact
     int n = 0;
 };
 
@@ -55,7 +56,7 @@ Errors measure_balls(const Shape<Dim>& shape, double ratio, double gap) {
         nodes.find(world.scene());
         const Mat<Dim> rotation = Mat<Dim>::Identity();
         double nearest = far;
-        double normal = 0.0;
+        Errors there;
         for (int i = 0; i < nodes.n_nodes(); ++i) {
             if (nodes.slots_of(i).size() < 2) continue;
             const Slot<Dim>*A = &nodes.slots()[nodes.slots_of(i)[0]],
@@ -69,11 +70,13 @@ Errors measure_balls(const Shape<Dim>& shape, double ratio, double gap) {
                          meet_ball<Dim>(x, tile->normal, c_b, ratio * radius), h, errors);
             if ((x - middle).norm() < nearest) {
                 nearest = (x - middle).norm();
-                normal = (tile->normal - aim.direction).norm();
+                there.normal_there = (tile->normal - aim.direction).norm();
+                there.gap_there = std::abs(tile->gap - gap) / h;
             }
         }
         CHECK(nearest < 0.6 * h);
-        errors.normal = std::max(errors.normal, normal);
+        errors.normal_there = std::max(errors.normal_there, there.normal_there);
+        errors.gap_there = std::max(errors.gap_there, there.gap_there);
     }
     return errors;
 }
@@ -123,9 +126,12 @@ TEST_CASE("Tile: ball against ball") {
                 CAPTURE(gap);
                 const Errors errors = measure_balls<Dim>(filling.shape, ratio, gap * filling.shape.dx);
                 CHECK(errors.n > 20);
-                CHECK(errors.gap < 0.1);
-                CHECK(errors.point < 0.1);
-                CHECK(errors.normal < 0.2);
+                // A tile at the end of its cell may be off by the error of a parabola; it is the nearest one
+                // that takes the load. measured 0.104, 0.024, 0.06, 0.12 (six and four particles a radius)
+                CHECK(errors.gap < 0.2);
+                CHECK(errors.point < 0.05);
+                CHECK(errors.gap_there < 0.1);
+                CHECK(errors.normal_there < 0.2);
             }
         }
     };
@@ -141,8 +147,8 @@ TEST_CASE("Tile: ball against wall") {
             CAPTURE(gap);
             const Errors errors = measure_wall<Dim>(filling.shape, gap * filling.shape.dx);
             CHECK(errors.n > 20);
-            CHECK(errors.gap < 0.1);
-            CHECK(errors.point < 0.1);
+            CHECK(errors.gap < 0.15);    // measured 0.079, bound 0.15
+            CHECK(errors.point < 0.08);  // measured 0.040, bound 0.08
         }
     };
     for (const Filling<2>& filling : fillings<2>()) check(filling);
@@ -179,7 +185,7 @@ TEST_CASE("Tile: a block on a tilted wall is exact") {
             worst = std::max(worst, std::abs(tile->gap - gap) / h);
         }
         CHECK(n_tiles > 4);
-        CHECK(worst < 1e-12);
+        CHECK(worst < 1e-12);  // measured 1.1e-13, bound 1e-12
     };
     for (const Aim<2>& aim : aims<2>(8)) check(block, aim, rotation_matrix(Spin<2>(aim.direction[0])));
     for (const Aim<3>& aim : aims<3>(4)) check(brick, aim, rotation_matrix(Spin<3>(aim.direction)));
