@@ -238,7 +238,7 @@ void draw_inclines(const Report& report, const Motions& motions) {
         ways.push_back(way);
         spins.push_back(spin);
     }
-    draw_charts(ways, 2, report.directory() + "/way.png");
+    draw_charts(ways, 2, report.directory() + "/x_of_t.png");
     draw_charts(spins, 2, report.directory() + "/spin.png");
 }
 
