@@ -81,7 +81,7 @@ struct GridContactOptions {
     GridRule rule = GridRule::pair;
     GridCoupling coupling = GridCoupling::impulse;
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
-    int max_sweeps = 10;
+    int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
     bool tile = true;         ///< gap where two fitted profiles come closest; false: at mean positions
     bool curvature = true;    ///< profiles know the reference curvature

@@ -105,7 +105,11 @@ void ContactNodes<Dim>::select(const ContactScene<Dim>& scene) {
     for (const Window& window : windows_) {
         IntVec<Dim> last = window.lo + window.size - IntVec<Dim>::Ones();
         IntVec<Dim> node = window.lo;
-        const auto advance = [&](int a) { node[a] = std::min(last[a], node[a] + marks_.side); };
+        const auto advance = [&](int a) {  // to the next page: the last one of a periodic axis may be cut
+            const int w = grid_.wrapped(a, node[a]);
+            const int step = std::min(marks_.side - w % marks_.side, grid_.n_nodes()[a] - w);
+            node[a] = std::min(last[a], node[a] + step);
+        };
         if constexpr (Dim == 2) {
             for (node[1] = window.lo[1];; advance(1)) {
                 for (node[0] = window.lo[0];; advance(0)) {
@@ -244,15 +248,16 @@ void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratc
     support.resize(static_cast<std::size_t>(total));
     for (const NearParticle<Dim>& near : scratch.near) {
         const LinearStencil<Dim> stencil(near.in_cells);
-        const double weight = near.surface >= 0 ? 1.0 : options_.interior_weight;
         for (int k = 0; k < stencil.size; ++k) {
             const int local = scratch.window[window.local(stencil.node(k))];
             if (local < 0) continue;
             Slot<Dim>& slot = slots_[first + local];
-            support[scratch.count[local]++] = {near.particle, near.surface, stencil.N[k],
-                                               weight * stencil.N[k],
+            const double N = stencil.N[k];
+            const double w =
+                options_.nodal ? N : (near.surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
+            support[scratch.count[local]++] = {near.particle, near.surface, N, w,
                                                scene.x[near.particle] - grid_.node_position(slot.index)};
-            slot.volume += stencil.N[k] * scene.volume[near.particle];
+            slot.volume += N * scene.volume[near.particle];
         }
     }
     int begin = 0;

@@ -20,7 +20,7 @@ struct Support {
     int particle;
     int surface;  ///< index into Shape::surface, or -1
     double N;     ///< linear shape function
-    double w;     ///< impulse weight: N at the surface, q N inside
+    double w;     ///< weight of the slot: N, or N^2 at the surface and q N^2 inside
     Vec<Dim> d;   ///< x_p - x_a [m]
 };
 
@@ -50,10 +50,11 @@ struct NearParticle {
 
 /// Options of the search, fixed for a run.
 struct ContactNodeOptions {
-    bool all_nodes = false;      ///< every node of every grain is kept (flip coupling)
-    bool all_particles = false;  ///< interior particles make contact nodes as well (seed rule)
-    double wall_reach = 0.75;    ///< nodes nearer to a wall than this have a slot [h]
-    double interior_weight = 1.0;
+    bool all_nodes = false;        ///< every node of every grain is kept (flip coupling)
+    bool all_particles = false;    ///< interior particles make contact nodes as well (seed rule)
+    double wall_reach = 0.75;      ///< nodes nearer to a wall than this have a slot [h]
+    bool nodal = false;            ///< w = N: slots carry nodal momentum (flip coupling, seed rule)
+    double interior_weight = 1.0;  ///< q, unless nodal
 };
 
 template <int Dim>

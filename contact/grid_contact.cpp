@@ -12,8 +12,8 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     nodes.all_nodes = options.coupling == GridCoupling::flip;
     nodes.all_particles = options.rule == GridRule::seed;
     nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
-    const bool nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
-    nodes.interior_weight = nodal ? 1.0 : options.interior_weight;
+    nodes.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
+    nodes.interior_weight = options.interior_weight;
     return nodes;
 }
 
@@ -70,6 +70,7 @@ void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const Cont
     else
         apply_seed_rule<Dim>(nodes_, scene, nodal_, nodal_before_, report_);
     const bool flip = options_.coupling == GridCoupling::flip;
+    if (!flip) v_trial_.assign(trial.v.begin(), trial.v.end());
     parallel::for_each(scene.grains.size(), [&](std::size_t g) {
         const Grain<Dim>& grain = scene.grains[g];
         if (flip)
@@ -88,6 +89,13 @@ void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const Cont
             }
         }
     });
+    if (flip) return;
+    // Mapped back, nodal changes do other work than on the nodes: the rest is loss of contact, too.
+    const double work = parallel::sum(trial.v.size(), 0.0, [&](std::size_t p) {
+        const Vec<Dim> dv = trial.v[p] - v_trial_[p];
+        return 0.5 * scene.mass[p] * dv.dot(trial.v_before[p] + trial.v[p]);
+    });
+    report_.normal_work = work - report_.friction_work - report_.wall_work;
 }
 
 template class GridContact<2>;

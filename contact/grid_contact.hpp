@@ -35,6 +35,7 @@ class GridContact {
     ContactNodes<Dim> nodes_;
     PairRule<Dim> pair_;
     std::vector<Vec<Dim>> nodal_before_, nodal_trial_, nodal_;  ///< [n_slots]
+    std::vector<Vec<Dim>> v_trial_;                             ///< [n] impulse coupling of nodal rules
     ContactReport<Dim> report_;
 };
 

@@ -93,8 +93,7 @@ void PairRule<Dim>::make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>&
         const auto [first, last] = nodes.slots_of_grain(static_cast<int>(g));
         for (int s = first; s < last && options_.coupling == GridCoupling::impulse && !options_.rotation; ++s)
             nodes.slots()[s].rotates = false;
-        if (first < last)
-            rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
+        if (first < last) rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
     });
     const std::size_t n_nodes = static_cast<std::size_t>(nodes.n_nodes());
     if (rows_.size() < n_nodes) rows_.resize(n_nodes);

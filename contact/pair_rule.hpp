@@ -1,6 +1,8 @@
 // The pair rule: one impulse a pair of grains and node, by projected Gauss-Seidel.
 //
-// Impulse map of a slot (particles p around node a, r_p = x_p - xb, w = N or q N, m = sum m_p w_p):
+// Impulse map of a slot (particles p around node a, r_p = x_p - xb, w = N^2 at the surface, q N^2 inside,
+// m = sum m_p w_p; N^2 couples neighbouring nodes less than N, so that contact is less stiff and the sweeps
+// converge faster):
 //
 //     dv_p = w_p B_p J,   B_p J = J/m + (Y (r x J)) x r_p,   r = x_c - xb,   Y = (sum m_p w_p (|r_p|^2 1 -
 //     r_p r_p^T))^-1
@@ -66,7 +68,7 @@ class PairRule {
                   ContactReport<Dim>& report) const;
 
     GridContactOptions options_;
-    std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of cornered grains with slots
+    std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of grains with slots
     std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_nodes]
     std::vector<std::vector<int>> colours_;        ///< nodes with rows, by colour
     std::vector<double> change_, total_;           ///< [n_nodes] of one sweep

@@ -9,6 +9,7 @@ namespace {
 
 constexpr double fit_regularisation = 1e-3;  ///< variance [h^2] below which a slope is not believed
 constexpr double flat_on_flat = 0.2;         ///< curvature [1/h] that centres two flat faces
+constexpr double flattest = 0.1;  ///< curvature [1/h] of a pair below which its closest point rocks
 constexpr double max_slope = 0.5;
 constexpr double max_interface_distance = 0.75;  ///< from the node [h]
 /// Least cosine between a particle's normal and that of the contact, for cornered grains: keeps the corners
@@ -58,7 +59,8 @@ std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const V
         const Vec<Dim> nu = *side.rotation * point.nu;
         if (grain.shape->cornered && sigma * n.dot(nu) < corner_filter) continue;
         // The nearest point of the true surface; at a corner, the face that the contact is with.
-        const Vec<Dim> d = e.d + point.delta * grain.scale * (grain.shape->cornered ? Vec<Dim>(sigma * n) : nu);
+        const Vec<Dim> d =
+            e.d + point.delta * grain.scale * (grain.shape->cornered ? Vec<Dim>(sigma * n) : nu);
         const Tangential s = T.transpose() * d / h;
         double y = n.dot(d) / h;
         if (apex) y += sigma * beyond_parabola(point.kappa / grain.scale * h, (s - *apex).norm());
@@ -93,11 +95,12 @@ std::optional<Profile<Dim>> fit(const TileSide<Dim>& side, double sigma, const V
 
 template <int Dim>
 Tile<Dim> closest_approach(const Profile<Dim>& A, const Profile<Dim>& B, const Vec<Dim>& n,
-                           const Eigen::Matrix<double, Dim, Dim - 1>& T, double h,
+                           const Eigen::Matrix<double, Dim, Dim - 1>& T, double h, double least_curvature,
                            typename Profile<Dim>::Tangential& s) {
     const typename Profile<Dim>::Tangential q1 = B.c1 - A.c1;
     const double q2 = B.c2 - A.c2;
-    const double curvature = A.c2 == 0.0 && B.c2 == 0.0 ? q2 + flat_on_flat : q2;
+    const bool flat = A.c2 == 0.0 && B.c2 == 0.0;
+    const double curvature = flat ? flat_on_flat : (q2 > 0.0 ? std::max(q2, least_curvature) : q2);
     for (int a = 0; a < Dim - 1; ++a) {
         if (curvature > 0.0)
             s[a] = std::clamp(-q1[a] / (2.0 * curvature), -0.5, 0.5);
@@ -148,7 +151,7 @@ std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& 
         const auto b = fit<Dim>(B, -1.0, n, T, h, options, apex_b);
         if (!a || !b) return std::nullopt;
         typename Profile<Dim>::Tangential s;
-        tile = closest_approach<Dim>(*a, *b, n, T, h, s);
+        tile = closest_approach<Dim>(*a, *b, n, T, h, flattest, s);
         if (std::abs(tile.point.dot(n)) > max_interface_distance * h) return std::nullopt;
         if (pass == 0 && options.tile) {
             typename Profile<Dim>::Tangential m = 0.5 * (a->c1 + b->c1) + (a->c2 + b->c2) * s;
@@ -175,7 +178,7 @@ std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>&
     Profile<Dim> plane;
     plane.c0 = wall_offset / h;
     typename Profile<Dim>::Tangential s;
-    const Tile<Dim> tile = closest_approach<Dim>(*a, plane, n, T, h, s);
+    const Tile<Dim> tile = closest_approach<Dim>(*a, plane, n, T, h, 0.0, s);
     if (std::abs(tile.point.dot(n)) > max_interface_distance * h) return std::nullopt;
     return tile;
 }

@@ -1,20 +1,30 @@
 // Geometry of one contact: where two surfaces come closest inside one cell of the grid.
 //
-// Around a node each surface is a parabola over the tangent plane, fitted to the surface particles in the
-// node's support with weights N_ap (s: tangential, y: normal coordinate, both from the node, in units of h):
+// Around a node each surface is a parabola over the tangent plane, fitted to the points of the true surface
+// nearest to the surface particles in the node's support, x_p + delta_p nu_p, with weights N_ap
+// (d: such a point, s: its tangential, y: its normal coordinate, both from the node, in units of h):
 //
-//     y_p = n.d_p/h + sigma delta_p/h - c2 |s_p|^2,   c2 = -sigma kappa h/2,   sigma = +1 (A), -1 (B)
+//     y_p = n.d_p/h + sigma b(|s_p - s_0|) - c2 |s_p|^2,   c2 = -sigma k/2,
+//           k = kappa h,   sigma = +1 (A), -1 (B)
 //     c1  = (cov(s,s) + 1e-3)^-1 cov(s,y),   c0 = mean(y) - c1.mean(s)
 //     y_f(s) = c0 + c1.s + c2 |s|^2
+//     b(u) = (1 - sqrt(1 - k^2 u^2))/k - k u^2/2      a circle's drop beyond the parabola of its apex s_0
+//
+// b enters in a second pass, when the first has told the apex. Without it and the points on the true surface
+// a rolling disk feels bumps of some thousandths of h, which make a stiff one hop.
 //
 // The gap q(s) = y_B - y_A = q0 + q1.s + q2 |s|^2 is least at s* = clamp(-q1/(2 q2), -1/2, 1/2):
 //
 //     g = h q(s*),   x_c = x_a + h T s* + h (y_A(s*) + y_B(s*))/2 n
 //
 // and the normal is turned by the mean slope there, m = (c1_A + c1_B)/2 + (c2_A + c2_B) s*, |m| <= 1/2, once.
-// delta_p: reference distance of the particle from the true surface [m]; kappa: reference curvature [1/m],
-// in 3D the mean of the two (exact for spheres and planes). Two flat faces have no closest point; q2 + 0.2
-// then keeps s* near the middle of the cell. A wall is a plane that keeps its normal.
+// delta_p: reference distance of the particle from the true surface [m]; nu_p: its reference normal, turned
+// with the grain (for grains with corners the contact normal, and only particles whose nu_p is within 57
+// degrees of it); kappa: reference curvature [1/m], in 3D the mean of the two (exact for spheres and planes).
+// Two flat faces have no closest point; q2 = 0.2 then keeps s* near the middle of the cell. Nor do round ones
+// have a sharp one where pressure has flattened them: the point runs to the side that turns in, and rocks a
+// cell whose q2 is small until the step no longer resolves it; so q2 counts as 0.1 at least there. A wall is
+// a plane that keeps its normal.
 #pragma once
 
 #include <optional>
@@ -35,7 +45,7 @@ template <int Dim>
 struct TileSide {
     const Slot<Dim>* slot;
     const Grain<Dim>* grain;
-    const Mat<Dim>* rotation;  ///< of the grain; read for cornered shapes only
+    const Mat<Dim>* rotation;  ///< of the grain, from the reference to now
 };
 
 /// Orthonormal tangents of a unit normal, as columns.

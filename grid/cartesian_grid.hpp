@@ -50,7 +50,7 @@ class CartesianGrid {
         const Vec<Dim> c = in_cells(x);
         for (int a = 0; a < Dim; ++a) {
             const double reach = periodic_[a] ? 1e9 : margin - 1.0;
-            if (!(c[a] >= -reach && c[a] <= n_cells_[a] + reach)) return false;
+            if (!(c[a] >= -reach && c[a] < n_cells_[a] + reach)) return false;
         }
         return true;
     }

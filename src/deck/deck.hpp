@@ -89,7 +89,7 @@ struct ContactDeck {
     double friction = 0.0;  ///< between grains, where no pair of materials says otherwise
     std::vector<FrictionPair> pairs;
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
-    int max_sweeps = 10;
+    int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
     bool tile = true;  ///< gap at the closest approach of two fitted profiles; false: from mean positions
     bool curvature = true;   ///< profiles know the reference curvature

@@ -1,0 +1,94 @@
+// A sphere on an inclined plane: rolling and slipping against the rigid answer.
+#pragma once
+
+#include "examples/spheres/cases.hpp"
+
+namespace quern::spheres {
+
+struct Incline {
+    double mu, stiffness;
+    std::string filling;
+    int cells;                   ///< per diameter
+    double x_bound, spin_bound;  ///< of the errors at 1 s [%]
+    double course_bound;         ///< of the spin after 0.2 s, in % of the spin at 1 s
+};
+
+/// A rigid sphere of moment of inertia beta M R^2 that slips or rolls.
+struct RigidMotion {
+    double acceleration, spin_rate;
+    RigidMotion(double mu, double beta) {
+        const double sine = 0.5, cosine = std::sqrt(0.75);  // 30 degrees
+        const double traction = std::min(beta / (1.0 + beta) * g * sine, mu * g * cosine);
+        acceleration = g * sine - traction;
+        spin_rate = traction / (beta * radius);
+    }
+};
+
+inline void report_rolling(Report& report) {
+    // Bounds of the errors at 1 s [%], of x and of the spin, and of the spin on the way.
+    const std::vector<Incline> all = {
+        {0.3, 10, "rings", 6, 0.2, 0.8, 1.5},    // measured 0.05, 0.46, 1.03
+        {0.3, 10, "lattice", 6, 0.2, 0.8, 2.0},  // measured 0.03, 0.32, 1.45
+        {0.3, 10, "mesh", 6, 0.2, 0.8, 2.0},     // measured 0.03, 0.21, 1.50
+        {0.3, 1, "rings", 6, 0.7, 1.5, 4.0},     // measured 0.42, 0.83, 3.02
+        {0.3, 1, "lattice", 6, 0.7, 2.0, 4.0},   // measured 0.37, 1.64, 3.26
+        {0.1, 10, "rings", 6, 0.1, 0.3, 1.5},    // measured 0.001, 0.09, 1.12
+        {0.155, 10, "rings", 6, 0.1, 0.5, 1.5},  // measured 0.005, 0.19, 1.18
+        {0.175, 10, "rings", 6, 0.3, 1.0, 2.0},  // measured 0.15, 0.55, 1.48
+        {0.3, 1, "rings", 12, 2.0, 0.5, 1.2},    // measured 1.67, 0.16, 0.70
+        {0.3, 10, "rings", 12, 0.4, 0.5, 2.0},   // measured 0.20, 0.11, 1.39
+    };
+    const std::vector<Incline> cases = report.options.short_mode ? std::vector<Incline>{all[0]} : all;
+    ReportTable table({"mu", "stiffness_factor", "cells", "inertia", "x_error_percent", "spin_error_percent",
+                       "largest_spin_error_percent", "height_range", "height_loss_percent"});
+    Chart spin{"Spin against the rigid answer", "t [s]", "error, % of the spin at 1 s", {}};
+    Chart place{"Distance against the rigid answer", "t [s]", "error [%]", {}};
+    fmt::print(
+        "\nSphere on a plane of 30 degrees, threshold of slip mu = tan(30) / 3.5 = 0.165\n"
+        "{:34} {:>8} {:>9} {:>9} {:>9} {:>12} {:>12}\n",
+        "", "I/(MR^2)", "x [%]", "spin [%]", "worst [%]", "y range [mm]", "1 - y/R [%]");
+    for (const Incline& c : cases) {
+        std::vector<std::string> overrides = {
+            override_of("mu", c.mu), override_of("stiffness_factor", c.stiffness),
+            override_of("cells_per_diameter", c.cells), "params.filling=" + c.filling};
+        const double beta = inertia_of(folder + "/rolling.yaml", overrides);
+        overrides.push_back(override_of("inertia", beta));
+        const std::vector<GrainRow> rows = rows_of(report.run("/rolling.yaml", overrides, "rolling"), 0);
+        const RigidMotion exact(c.mu, beta);
+        const double start = rows.front().position[0], end = rows.back().time;
+        double low = INFINITY, high = 0.0, height = 0.0, worst = 0.0, x_error = 0.0, spin_error = 0.0;
+        ChartLine spins{fmt::format("mu {}, stiffness x{}, {} {}", c.mu, c.stiffness, c.filling, c.cells),
+                        {},
+                        {},
+                        static_cast<int>(spin.lines.size())};
+        ChartLine places = spins;
+        for (const GrainRow& row : rows) {
+            const double y = row.position[1], t = row.time;
+            low = std::min(low, y);
+            high = std::max(high, y);
+            height += y / static_cast<double>(rows.size());
+            if (t < 0.1) continue;
+            x_error = 100.0 * ((row.position[0] - start) / (0.5 * exact.acceleration * t * t) - 1.0);
+            const double spin_of_end = 100.0 * (-row.omega - exact.spin_rate * t) / (exact.spin_rate * end);
+            spin_error = spin_of_end * end / t;
+            if (t > 0.2) worst = std::max(worst, std::abs(spin_of_end));
+            spins.x.push_back(t), spins.y.push_back(spin_of_end);
+            places.x.push_back(t), places.y.push_back(x_error);
+        }
+        if (c.mu == 0.3 && c.filling == "rings") {
+            spin.lines.push_back(spins);
+            place.lines.push_back(places);
+        }
+        fmt::print("{:34} {:8.4f} {:9.2f} {:9.2f} {:9.2f} {:12.2f} {:12.2f}\n", spins.label, beta, x_error,
+                   spin_error, worst, 1e3 * (high - low), 100.0 * (1.0 - height / radius));
+        table.add(c.filling, {c.mu, c.stiffness, static_cast<double>(c.cells), beta, x_error, spin_error,
+                              worst, high - low, 100.0 * (1.0 - height / radius)});
+        report.checks.at_most(spins.label + ": |x error| [%]", std::abs(x_error), c.x_bound);
+        report.checks.at_most(spins.label + ": |spin error| [%]", std::abs(spin_error), c.spin_bound);
+        report.checks.at_most(spins.label + ": worst spin error [%]", worst, c.course_bound);
+    }
+    table.write(report.options.directory, "rolling");
+    draw_charts({place, spin}, 2, report.options.directory + "/rolling.png");
+}
+
+}  // namespace quern::spheres

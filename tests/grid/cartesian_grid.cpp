@@ -1,0 +1,109 @@
+// Cells, wrapping and colours of the background grid.
+#include "grid/cartesian_grid.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <set>
+#include <vector>
+
+namespace quern {
+
+namespace {
+
+template <int Dim>
+CartesianGrid<Dim> make_grid(int n, bool periodic) {
+    std::array<bool, Dim> axes{};
+    axes.fill(periodic);
+    return CartesianGrid<Dim>(Vec<Dim>::Constant(-1.0), 0.25, IntVec<Dim>::Constant(n), axes);
+}
+
+/// Nodes of a grid, each once, not wrapped.
+template <int Dim>
+std::vector<IntVec<Dim>> all_nodes(const CartesianGrid<Dim>& grid) {
+    std::vector<IntVec<Dim>> nodes;
+    for (int k = 0; k < grid.n_nodes().prod(); ++k) {
+        IntVec<Dim> node;
+        for (int a = 0, rest = k; a < Dim; rest /= grid.n_nodes()[a], ++a)
+            node[a] = rest % grid.n_nodes()[a] - (grid.periodic(a) ? 0 : grid.margin);
+        nodes.push_back(node);
+    }
+    return nodes;
+}
+
+template <int Dim>
+void check_colours(int n, bool periodic) {
+    CAPTURE(Dim);
+    CAPTURE(n);
+    CAPTURE(periodic);
+    const CartesianGrid<Dim> grid = make_grid<Dim>(n, periodic);
+    int clashes = 0;
+    std::set<int> used;
+    for (const IntVec<Dim>& node : all_nodes<Dim>(grid)) {
+        const int colour = grid.colour(node);
+        used.insert(colour);
+        CHECK(colour >= 0);
+        CHECK(colour < grid.n_colours);
+        for (int k = 0; k < (Dim == 2 ? 9 : 27); ++k) {  // nodes that share a cell with this one
+            IntVec<Dim> other = node;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= 3) other[a] += rest % 3 - 1;
+            if (other != node) clashes += grid.colour(other) == colour;
+            for (int a = 0; a < Dim; ++a)  // a colour is that of the node, however often it is gone around
+                if (periodic) other[a] += n;
+            if (periodic && other == node + IntVec<Dim>::Constant(n)) CHECK(grid.colour(other) == colour);
+        }
+    }
+    CHECK(clashes == 0);
+    const std::size_t per_axis = periodic && n % 2 == 1 ? 3 : 2;
+    CHECK(used.size() == (Dim == 2 ? per_axis * per_axis : per_axis * per_axis * per_axis));
+}
+
+}  // namespace
+
+TEST_CASE("CartesianGrid: nodes of one colour share no cell") {
+    for (const bool periodic : {false, true})
+        for (const int n : {4, 5, 6, 7, 8, 9}) {
+            check_colours<2>(n, periodic);
+            check_colours<3>(n, periodic);
+        }
+}
+
+TEST_CASE("CartesianGrid: nodes stand where the origin and h put them") {
+    const CartesianGrid<3> grid({1.0, 2.0, 3.0}, 0.5, {4, 6, 8}, {false, true, false});
+    CHECK(grid.node_position({2, -1, 0}) == Vec<3>(2.0, 1.5, 3.0));
+    CHECK(grid.extent() == Vec<3>(2.0, 3.0, 4.0));
+    CHECK(grid.n_nodes() == IntVec<3>(11, 6, 15));
+    CHECK(grid.in_cells({2.0, 1.5, 3.25}) == Vec<3>(2.0, -1.0, 0.5));
+    CHECK(grid.cell(grid.in_cells({1.99, 1.51, 2.99})) == IntVec<3>(1, -1, -1));
+    CHECK(grid.cell({-0.0, -1e-300, 0.0}) == IntVec<3>(0, -1, 0));
+}
+
+TEST_CASE("CartesianGrid: an axis wraps both ways, or counts from its margin") {
+    const CartesianGrid<2> grid({0.0, 0.0}, 1.0, {5, 5}, {true, false});
+    for (int i = -12; i < 12; ++i) {
+        CHECK(grid.wrapped(0, i) == ((i % 5) + 5) % 5);
+        CHECK(grid.wrapped(1, i) == i + 3);
+    }
+}
+
+TEST_CASE("CartesianGrid: contains just what has nodes all around") {
+    const CartesianGrid<2> grid({0.0, 0.0}, 1.0, {5, 5}, {true, false});
+    CHECK(grid.contains({1e6, 2.0}));
+    CHECK(grid.contains({-1e6, 2.0}));
+    CHECK_FALSE(grid.contains({1e10, 2.0}));
+    CHECK(grid.contains({0.0, -2.0}));
+    CHECK_FALSE(grid.contains({0.0, std::nextafter(-2.0, -3.0)}));
+    CHECK(grid.contains({0.0, std::nextafter(7.0, 0.0)}));
+    CHECK_FALSE(grid.contains({0.0, 7.0}));  // the quadratic stencil of its cell would end beyond the margin
+    const double no_number = std::numeric_limits<double>::quiet_NaN();
+    CHECK_FALSE(grid.contains({no_number, 1.0}));
+    CHECK_FALSE(grid.contains({1.0, no_number}));
+    // Two cells to each side of the outermost points are nodes of the grid.
+    for (const double x : {-2.0, std::nextafter(7.0, 0.0)}) {
+        const int cell = grid.cell(grid.in_cells({0.0, x}))[1];
+        CHECK(grid.wrapped(1, cell - 1) >= 0);
+        CHECK(grid.wrapped(1, cell + 2) < grid.n_nodes()[1]);
+    }
+}
+
+}  // namespace quern

@@ -1,0 +1,77 @@
+// The same bits for any number of threads and any number of runs.
+#include "grid/parallel.hpp"
+#include "tests/sim/decks.hpp"
+
+namespace quern::test {
+
+namespace {
+
+const std::string packing = R"(title: packing
+materials:
+  rubber: {density: 3000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, bond_damping: 0.1 ms}
+  light: {density: 1000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, critical_stretch: 0.02}
+shapes:
+  disk: {type: disk, filling: rings, radius: 0.5, spacing: 0.125}
+  block: {type: rectangle, size: [0.8, 0.6], spacing: 0.1}
+grid: {origin: [0, 0], extent: [7, 7], spacing: 0.25}
+gravity: [0, -9.8]
+walls: [{side: y-, friction: 0.3}, {side: x-}, {side: x+}]
+contact: {friction: 0.3}
+time: {end: 0.15}
+output: {interval: 0.1, history_interval: 0.01}
+grains:
+  - {shape: disk, material: rubber, array: {counts: [6, 3], origin: [0.6, 0.55], step: [1.1, 1.04], jitter: 0.02,
+     scale: [0.9, 1], seed: 3}, velocity: [0, -3]}
+  - {shape: block, material: light, array: {counts: [6, 2], origin: [0.6, 3.6], step: [1.1, 1.04]},
+     velocity: [0, -3], angle: 0.2}
+)";
+
+void check_threads(const std::string& deck, const std::vector<std::string>& overrides, int n_grains) {
+    std::string hash;
+    double energy = 0.0;
+    for (const int threads : {1, 2, 3, 1}) {
+        CAPTURE(threads);
+        const RunRecord record = run_text(deck, overrides, threads);
+        CHECK(record.summary.threads == threads);
+        CHECK(record.summary.n_grains == n_grains);
+        CHECK(record.summary.energy.contact_loss > 0.0);
+        if (hash.empty()) {
+            hash = record.summary.state_hash;
+            energy = record.summary.energy.residual;
+        }
+        CHECK(record.summary.state_hash == hash);
+        CHECK(record.summary.energy.residual == energy);
+    }
+    CHECK(hash.size() == 16);
+    parallel::set_threads(1);
+}
+
+}  // namespace
+
+TEST_CASE("Determinism: thirty grains in the plane, every method") {
+    check_threads(packing, {}, 30);
+    check_threads(packing, {"contact.coupling=flip"}, 30);
+    check_threads(packing, {"contact.rule=seed"}, 30);
+}
+
+TEST_CASE("Determinism: a small packing in space") {
+    check_threads(space_deck + R"(
+time: {end: 0.05}
+gravity: [0, 0, -9.8]
+walls: [{side: z-, friction: 0.3}]
+contact: {friction: 0.3}
+output: {interval: 0.1, history_interval: 0.01}
+grains:
+  - {shape: ball, material: rubber, array: {counts: [3, 2, 2], origin: [0.7, 0.7, 0.52], step: [1.02, 1.02, 1.02]},
+     velocity: [0, 0.3, -2]}
+)",
+                  {}, 12);
+}
+
+TEST_CASE("Determinism: the hash sees every change of the deck that moves a particle") {
+    const std::string one = run_text(packing, {"time.end=0.01"}).summary.state_hash;
+    CHECK(run_text(packing, {"time.end=0.01"}).summary.state_hash == one);
+    CHECK(run_text(packing, {"time.end=0.01", "gravity=[0, -9.80000001]"}).summary.state_hash != one);
+}
+
+}  // namespace quern::test

@@ -1,0 +1,89 @@
+// Scenes that cannot be run, and runs that go wrong: one message that names the place.
+#include "grid/error.hpp"
+#include "tests/sim/decks.hpp"
+
+namespace quern::test {
+
+namespace {
+
+const std::string two_disks = plane_deck + R"(time: {end: 0.05}
+walls: [{side: y-}, {name: slope, point: [0, 3], normal: [1, -4]}]
+constraints: [{region: x < 9, velocity: [free, free]}]
+grains:
+  - {shape: disk, material: rubber, position: [1, 1]}
+  - {shape: disk, material: rubber, position: [3, 1]}
+)";
+
+std::string input_error(const std::string& from, const std::string& to) {
+    return message_of<InputError>(replaced(two_disks, from, to));
+}
+
+}  // namespace
+
+TEST_CASE("Errors: grains that overlap") {
+    const std::string message = input_error("position: [3, 1]", "position: [1.9, 1]");
+    CHECK(contains(message, "deck.yaml:14: grains.1"));
+    CHECK(contains(message, "grain 1 overlapping grain 0"));
+    // Just touching is no overlap.
+    CHECK_NOTHROW(run_text(replaced(two_disks, "position: [3, 1]", "position: [2.0, 1]")));
+}
+
+TEST_CASE("Errors: a grain behind a wall") {
+    const std::string message = input_error("position: [3, 1]", "position: [3, 0.3]");
+    CHECK(contains(message, "deck.yaml:14: grains.1"));
+    CHECK(contains(message, "wall 'y-'"));
+    CHECK(contains(input_error("position: [3, 1]", "position: [3, 3.4]"), "wall 'slope'"));
+}
+
+TEST_CASE("Errors: a grain outside the grid") {
+    const std::string message = input_error("position: [3, 1]", "position: [5.99, 1]");
+    CHECK(contains(message, "deck.yaml:14: grains.1"));
+    CHECK(contains(message, "outside the grid"));
+}
+
+TEST_CASE("Errors: a region without particles") {
+    const std::string message = input_error("x < 9", "x > 9");
+    CHECK(contains(message, "deck.yaml:11: constraints.0"));
+    CHECK(contains(message, "region without particles"));
+}
+
+TEST_CASE("Errors: too few cells on a periodic axis") {
+    const std::string message =
+        input_error("extent: [6, 4], spacing: \"${1/n}\"", "extent: [6, 4], spacing: 2, periodic: [x]");
+    CHECK(contains(message, "3 cells on a periodic axis"));
+}
+
+TEST_CASE("Errors: an unstable step ends the run and names who blew up") {
+    const RunRecord stable = run_text(two_disks);
+    const std::string shaken = replaced(two_disks, "time: {end: 0.05}", "time: {end: 2}");
+    const std::string step = std::to_string(3.0 * stable.summary.stable_step);
+    const std::string message = message_of<SimulationError>(
+        replaced(shaken, "position: [3, 1]", "position: [3, 1], velocity: [0, -2], spin: 3"),
+        {"time.step=" + step});
+    CHECK(contains(message, "grain "));
+    CHECK(contains(message, "particle "));
+    CHECK(contains(message, "step "));
+}
+
+TEST_CASE("Errors: a particle that leaves the grid") {
+    const std::string message = message_of<SimulationError>(
+        replaced(two_disks, "position: [3, 1]", "position: [3, 1], velocity: [100, 0]"));
+    CHECK(contains(message, "grain 1, particle "));
+    CHECK(contains(message, "has left the grid"));
+}
+
+TEST_CASE("Errors: a failed run leaves its results") {
+    const TempFolder folder;
+    const std::string file = folder.write(
+        "deck.yaml", replaced(two_disks, "position: [3, 1]", "position: [3, 1], velocity: [100, 0]"));
+    RunOptions options;
+    options.directory = file + ".out";
+    options.threads = 1;
+    RunRecord record;
+    CHECK_THROWS_AS(run_deck(read_deck(file), options, &record), SimulationError);
+    CHECK(contains(record.summary.outcome, "failed: grain 1"));
+    for (const char* name : {"summary.json", "history.csv", "results.h5", "run.log"})
+        CHECK(std::filesystem::file_size(options.directory + "/" + name) > 0);
+}
+
+}  // namespace quern::test
