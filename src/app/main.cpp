@@ -135,12 +135,13 @@ int parse_and_run(int argc, char** argv) {
     }
     if (run_command.parsed()) return run(arguments);
     if (render_command.parsed()) return draw(arguments);
-    if (check_command.parsed()) {
-        fmt::print("{}", resolved_yaml(read_deck(arguments.deck, arguments.overrides)));
-    } else {
-        fmt::print("{}", arguments.markdown ? deck_reference() : deck_schema());
-    }
-    return std::fflush(stdout) == 0 ? 0 : report("cannot write to standard output", OutputError::exit_code);
+    std::string text;
+    if (check_command.parsed())
+        text = resolved_yaml(read_deck(arguments.deck, arguments.overrides));
+    else
+        text = arguments.markdown ? deck_reference() : deck_schema();
+    const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;
+    return written ? 0 : report("cannot write to standard output", OutputError::exit_code);
 }
 
 }  // namespace

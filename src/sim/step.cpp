@@ -26,8 +26,23 @@ class StageTimer {
     Clock::time_point start_;
 };
 
+/// Elastic energy of a grain, and what this step's forces have added to its kinetic energy so far: what the
+/// budget counts at the time of the positions.
+template <int Dim, class Model>
+double energy_now(const Model& model, const GrainView<Dim>& view, const Vec<Dim>* v, double elapsed) {
+    thread_local std::vector<Vec<Dim>> f;
+    f.assign(view.x.size(), Vec<Dim>::Zero());
+    model.add_internal_forces(view, f);
+    double energy = model.elastic_energy(view);
+    for (std::size_t i = 0; i < f.size(); ++i) energy += elapsed * f[i].dot(v[i]);
+    return energy;
+}
+
 template <int Dim>
 void break_bonds(Scene<Dim>& scene, StepContext<Dim>& now) {
+    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : scene.particles.v;
+    const double elapsed = now.part_done() * now.dt;
     for (const MaterialGroup<Dim>& group : scene.groups) {
         if (!group.breakable) continue;
         struct Broken {
@@ -41,20 +56,21 @@ void break_bonds(Scene<Dim>& scene, StepContext<Dim>& now) {
         };
         const auto broken = std::visit(
             [&](const auto& model) {
-                return parallel::sum(
-                    static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
-                    [&](std::size_t i) {
-                        const int g = group.first_grain + static_cast<int>(i);
-                        const GrainView<Dim> view = scene.view(g);
-                        thread_local std::vector<std::uint8_t> intact;
-                        intact.assign(view.alive.begin(), view.alive.end());
-                        Broken grain;
-                        grain.count = model.break_bonds(view, scene.alive_of(g));
-                        if (grain.count == 0) return grain;
-                        grain.released = -model.elastic_energy(view);
-                        grain.released += model.elastic_energy({view.scale, view.x, view.v, intact});
-                        return grain;
-                    });
+                return parallel::sum(static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
+                                     [&](std::size_t i) {
+                                         const int g = group.first_grain + static_cast<int>(i);
+                                         const GrainView<Dim> view = scene.view(g);
+                                         thread_local std::vector<std::uint8_t> intact;
+                                         intact.assign(view.alive.begin(), view.alive.end());
+                                         Broken grain;
+                                         grain.count = model.break_bonds(view, scene.alive_of(g));
+                                         if (grain.count == 0) return grain;
+                                         const Vec<Dim>* v = velocity.data() + scene.grains[g].first;
+                                         const GrainView<Dim> before{view.scale, view.x, view.v, intact};
+                                         grain.released = energy_now<Dim>(model, before, v, elapsed) -
+                                                          energy_now<Dim>(model, view, v, elapsed);
+                                         return grain;
+                                     });
             },
             group.model);
         now.newly_broken += broken.count;

@@ -22,8 +22,8 @@ double meet_ball(const Vec<Dim>& x, const Vec<Dim>& n, const Vec<Dim>& c, double
 }
 
 struct Errors {
-    double gap = 0, point = 0;               ///< of all tiles that may touch soon
-    double gap_there = 0, normal_there = 0;  ///< of the tile nearest to the contact
+    double gap = 0, point = 0;  ///< of all tiles that may touch soon
+    double normal_there = 0;    ///< of the tile nearest to the contact
     int n = 0;
 };
 
@@ -71,12 +71,10 @@ Errors measure_balls(const Shape<Dim>& shape, double ratio, double gap) {
             if ((x - middle).norm() < nearest) {
                 nearest = (x - middle).norm();
                 there.normal_there = (tile->normal - aim.direction).norm();
-                there.gap_there = std::abs(tile->gap - gap) / h;
             }
         }
         CHECK(nearest < 0.6 * h);
         errors.normal_there = std::max(errors.normal_there, there.normal_there);
-        errors.gap_there = std::max(errors.gap_there, there.gap_there);
     }
     return errors;
 }
@@ -126,11 +124,10 @@ TEST_CASE("Tile: ball against ball") {
                 CAPTURE(gap);
                 const Errors errors = measure_balls<Dim>(filling.shape, ratio, gap * filling.shape.dx);
                 CHECK(errors.n > 20);
-                // A tile at the end of its cell may be off by the error of a parabola; it is the nearest one
-                // that takes the load. measured 0.104, 0.024, 0.06, 0.12 (six and four particles a radius)
+                // The gap of a tile at the end of its cell is off by the error of a parabola.
+                // measured 0.104, 0.024 and 0.12 (in space, four particles a radius), bound 0.2, 0.05 and 0.2
                 CHECK(errors.gap < 0.2);
                 CHECK(errors.point < 0.05);
-                CHECK(errors.gap_there < 0.1);
                 CHECK(errors.normal_there < 0.2);
             }
         }

@@ -12,7 +12,7 @@
 namespace quern::test {
 
 /// Rubber, a disk of R = 0.5 m with six particles a radius, a box of 6 m by 4 m. Cases add sections to it.
-inline const std::string plane_deck = R"(title: test
+inline const std::string plane_deck = R"yaml(title: test
 dimension: 2
 params: {n: 6}
 materials:
@@ -20,10 +20,10 @@ materials:
 shapes:
   disk: {type: disk, filling: rings, radius: 0.5, spacing: "${0.5/n}"}
 grid: {origin: [0, 0], extent: [6, 4], spacing: "${1/n}"}
-)";
+)yaml";
 
 /// The same in space: a ball of R = 0.5 m with three particles a radius.
-inline const std::string space_deck = R"(title: test
+inline const std::string space_deck = R"yaml(title: test
 dimension: 3
 params: {n: 3}
 materials:
@@ -31,7 +31,7 @@ materials:
 shapes:
   ball: {type: sphere, filling: rings, radius: 0.5, spacing: "${0.5/n}"}
 grid: {origin: [0, 0, 0], extent: [4, 4, 4], spacing: "${1/n}"}
-)";
+)yaml";
 
 /// Runs a deck in a folder that vanishes.
 inline RunRecord run_text(const std::string& text, const std::vector<std::string>& overrides = {},
@@ -42,11 +42,12 @@ inline RunRecord run_text(const std::string& text, const std::vector<std::string
     options.directory = file + ".out";
     options.threads = threads;
     RunRecord record;
-    CHECK(run_deck(read_deck(file, overrides), options, &record) == RunOutcome::done);
+    const RunOutcome outcome = run_deck(read_deck(file, overrides), options, &record);
+    CHECK(outcome == RunOutcome::done);
     return record;
 }
 
-/// What() of the Error that running a deck ends with; a failed check if it does not.
+/// The message of the Error that running a deck ends with; a failed check if it does not.
 template <class Error>
 std::string message_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
     try {

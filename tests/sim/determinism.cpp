@@ -6,7 +6,7 @@ namespace quern::test {
 
 namespace {
 
-const std::string packing = R"(title: packing
+const std::string packing = R"yaml(title: packing
 materials:
   rubber: {density: 3000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, bond_damping: 0.1 ms}
   light: {density: 1000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, critical_stretch: 0.02}
@@ -24,7 +24,7 @@ grains:
      scale: [0.9, 1], seed: 3}, velocity: [0, -3]}
   - {shape: block, material: light, array: {counts: [6, 2], origin: [0.6, 3.6], step: [1.1, 1.04]},
      velocity: [0, -3], angle: 0.2}
-)";
+)yaml";
 
 void check_threads(const std::string& deck, const std::vector<std::string>& overrides, int n_grains) {
     std::string hash;
@@ -55,7 +55,7 @@ TEST_CASE("Determinism: thirty grains in the plane, every method") {
 }
 
 TEST_CASE("Determinism: a small packing in space") {
-    check_threads(space_deck + R"(
+    check_threads(space_deck + R"yaml(
 time: {end: 0.05}
 gravity: [0, 0, -9.8]
 walls: [{side: z-, friction: 0.3}]
@@ -64,7 +64,7 @@ output: {interval: 0.1, history_interval: 0.01}
 grains:
   - {shape: ball, material: rubber, array: {counts: [3, 2, 2], origin: [0.7, 0.7, 0.52], step: [1.02, 1.02, 1.02]},
      velocity: [0, 0.3, -2]}
-)",
+)yaml",
                   {}, 12);
 }
 

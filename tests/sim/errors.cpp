@@ -6,13 +6,13 @@ namespace quern::test {
 
 namespace {
 
-const std::string two_disks = plane_deck + R"(time: {end: 0.05}
+const std::string two_disks = plane_deck + R"yaml(time: {end: 0.05}
 walls: [{side: y-}, {name: slope, point: [0, 3], normal: [1, -4]}]
-constraints: [{region: x < 9, velocity: [free, free]}]
+constraints: [{grains: [0], region: x < 9, velocity: [0, free]}]
 grains:
   - {shape: disk, material: rubber, position: [1, 1]}
   - {shape: disk, material: rubber, position: [3, 1]}
-)";
+)yaml";
 
 std::string input_error(const std::string& from, const std::string& to) {
     return message_of<InputError>(replaced(two_disks, from, to));
@@ -48,15 +48,16 @@ TEST_CASE("Errors: a region without particles") {
 }
 
 TEST_CASE("Errors: too few cells on a periodic axis") {
-    const std::string message =
-        input_error("extent: [6, 4], spacing: \"${1/n}\"", "extent: [6, 4], spacing: 2, periodic: [x]");
+    const std::string message = message_of<InputError>(
+        replaced(plane_deck, "spacing: \"${1/n}\"", "spacing: 2, periodic: [x]") +
+        "time: {end: 0.05}\ngrains: [{shape: disk, material: rubber, position: [1, 1]}]\n");
     CHECK(contains(message, "3 cells on a periodic axis"));
 }
 
 TEST_CASE("Errors: an unstable step ends the run and names who blew up") {
     const RunRecord stable = run_text(two_disks);
     const std::string shaken = replaced(two_disks, "time: {end: 0.05}", "time: {end: 2}");
-    const std::string step = std::to_string(3.0 * stable.summary.stable_step);
+    const std::string step = fmt::format("{}", 3.0 * stable.summary.stable_step);
     const std::string message = message_of<SimulationError>(
         replaced(shaken, "position: [3, 1]", "position: [3, 1], velocity: [0, -2], spin: 3"),
         {"time.step=" + step});

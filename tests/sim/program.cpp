@@ -63,12 +63,12 @@ bool is_one_line(const std::string& text) {
     return !text.empty() && text.back() == '\n' && text.find('\n') == text.size() - 1;
 }
 
-const std::string falling = plane_deck + R"(time: {end: 0.05}
+const std::string falling = plane_deck + R"yaml(time: {end: 0.05}
 gravity: [0, -9.8]
 walls: [{side: y-}]
 output: {track: all}
 grains: [{shape: disk, material: rubber, position: [2, 0.55]}]
-)";
+)yaml";
 
 /// Ends with the code, says why in one line, and says nothing else.
 void check_failure(const Result& result, int code, const std::string& word) {
