@@ -19,12 +19,13 @@ using Order = std::array<int, 3>;  ///< disk of each grain
 const std::string deck = EXAMPLE_DIR "/three.yaml";
 
 struct Case {
-    double r_over_dx = 12, mu = 0.3, offset = 0.0, shift = 0.0, angle_degrees = 90.0;
+    double r_over_dx = 12, h_over_dx = 2, mu = 0.3, offset = 0.0, shift = 0.0, angle_degrees = 90.0;
     std::string rule = "pair", coupling = "impulse";
     Order order = {0, 1, 2};
 
     std::vector<std::string> overrides() const {
-        return {fmt::format("params.cells_per_radius={}", r_over_dx / 2.0),
+        return {fmt::format("params.cells_per_radius={}", r_over_dx / h_over_dx),
+                fmt::format("params.particles_per_cell={}", h_over_dx),
                 fmt::format("params.mu={}", mu),
                 fmt::format("params.offset={}", offset),
                 fmt::format("params.grid_shift={}", shift),
@@ -36,8 +37,9 @@ struct Case {
                 fmt::format("params.grain_2={}", order[2])};
     }
     std::string name() const {
-        return fmt::format("{}/{} R/dx {} mu {} offset {} shift {} angle {} order {}{}{}", rule, coupling,
-                           r_over_dx, mu, offset, shift, angle_degrees, order[0], order[1], order[2]);
+        return fmt::format("{}/{} R/dx {} h/dx {} mu {} offset {} shift {} angle {} order {}{}{}", rule,
+                           coupling, r_over_dx, h_over_dx, mu, offset, shift, angle_degrees, order[0],
+                           order[1], order[2]);
     }
 };
 
@@ -137,36 +139,39 @@ Worst run_all(Bench& bench, Case c, const ReportOptions& options) {
 void report_rules(Bench& bench, const ReportOptions& options, ReportChecks& checks) {
     struct Method {
         const char *rule, *coupling;
-        std::vector<double> resolutions;
+        double r_over_dx;
+        double return_speed;  ///< bound
     };
-    std::vector<Method> methods = {{"pair", "impulse", {6, 12, 24}},
-                                   {"pair", "flip", {12}},
-                                   {"seed", "flip", {12}},
-                                   {"seed", "impulse", {12}}};
-    if (options.short_mode) methods = {{"pair", "impulse", {6, 12}}, {"seed", "flip", {6}}};
+    // Return speed: measured 0.819, 0.904, 0.919
+    std::vector<Method> methods = {
+        {"pair", "impulse", 6, 0.81}, {"pair", "impulse", 12, 0.9}, {"pair", "impulse", 24, 0.915},
+        {"pair", "flip", 12, 0.0},    {"seed", "flip", 12, 0.0},    {"seed", "impulse", 12, 0.0},
+    };
+    if (options.short_mode) methods.resize(2);
     fmt::print(
-        "\nFriction 0.3, worst over grid shifts and angles\n{:14} {:>5} {:>13} {:>9} {:>14} {:>10} {:>14} "
-        "{:>9} {:>9}\n",
+        "\nFriction 0.3, worst over grid shifts and angles\n{:14} {:>5} {:>13} {:>9} {:>14} {:>10} "
+        "{:>14} {:>9} {:>9}\n",
         "rule/coupling", "R/dx", "return speed", "uneven", "approach left", "kinetic", "energy growth", "dP",
         "dL");
-    for (const Method& method : methods)
-        for (const double r_over_dx : method.resolutions) {
-            Case c;
-            c.rule = method.rule;
-            c.coupling = method.coupling;
-            c.r_over_dx = r_over_dx;
-            const Worst worst = run_all(bench, c, options);
-            const std::string label = fmt::format("{}/{}", c.rule, c.coupling);
-            fmt::print("{:14} {:5} {:13.4f} {:9.4f} {:14.1e} {:10.4f} {:14.1e} {:9.1e} {:9.1e}\n", label,
-                       r_over_dx, worst.return_speed, worst.uneven, worst.approach_left, worst.kinetic,
-                       worst.energy_growth, worst.linear, worst.angular);
-            if (c.rule != "pair" || c.coupling != "impulse") continue;
-            const std::string where = fmt::format("R/dx {}: ", r_over_dx);
-            checks.at_most(where + "linear momentum, relative error", worst.linear, 1e-12);
-            checks.at_most(where + "angular momentum, relative error", worst.angular, 1e-10);
-            checks.at_most(where + "approach left over speed before", worst.approach_left, 0.0);
-            checks.at_most(where + "kinetic energy after over before", worst.kinetic, 1.0);
-        }
+    for (const Method& method : methods) {
+        Case c;
+        c.rule = method.rule;
+        c.coupling = method.coupling;
+        c.r_over_dx = method.r_over_dx;
+        const Worst worst = run_all(bench, c, options);
+        const std::string label = fmt::format("{}/{}", c.rule, c.coupling);
+        fmt::print("{:14} {:5} {:13.4f} {:9.4f} {:14.1e} {:10.4f} {:14.1e} {:9.1e} {:9.1e}\n", label,
+                   c.r_over_dx, worst.return_speed, worst.uneven, worst.approach_left, worst.kinetic,
+                   worst.energy_growth, worst.linear, worst.angular);
+        if (c.rule != "pair" || c.coupling != "impulse") continue;
+        const std::string where = fmt::format("R/dx {}: ", c.r_over_dx);
+        checks.at_most(where + "linear momentum, relative error", worst.linear, 1e-12);
+        checks.at_most(where + "angular momentum, relative error", worst.angular, 1e-10);
+        checks.at_most(where + "approach left over speed before", worst.approach_left, 0.0);
+        checks.at_most(where + "kinetic energy after over before", worst.kinetic, 1.0);
+        checks.at_most(where + "growth of kinetic plus elastic energy", worst.energy_growth, 1e-12);
+        checks.at_least(where + "return speed over speed before", worst.return_speed, method.return_speed);
+    }
 }
 
 /// Largest difference of any number of any grain of two runs whose grains are numbered differently.
@@ -186,25 +191,30 @@ double difference(const Meeting& a, const Order& order_a, const Meeting& b, cons
     return largest;
 }
 
-/// All permutations of the grains, without and with symmetry.
+/// All permutations of the grains. On a grid of 1.5 R the three contacts lie in the reach of one node: only
+/// there do rows of three grains share a node, and the order in which they are solved could show.
 void report_orders(Bench& bench, const ReportOptions& options, ReportChecks& checks) {
     fmt::print(
         "\nAll six orders of the grains: largest difference of x, v, angle, omega at any time\n"
-        "{:14} {:>5} {:>7} {:>6} {:>11}\n",
-        "rule/coupling", "R/dx", "offset", "shift", "difference");
+        "{:14} {:>5} {:>5} {:>7} {:>6} {:>14} {:>9} {:>11}\n",
+        "rule/coupling", "R/dx", "h/dx", "offset", "shift", "approach left", "dP", "difference");
     struct Setting {
         const char *rule, *coupling;
-        double r_over_dx, offset, shift;
+        double r_over_dx, h_over_dx, offset, shift;
     };
-    std::vector<Setting> settings = {{"pair", "impulse", 6, 0, 0},       {"pair", "impulse", 12, 0, 0},
-                                     {"pair", "impulse", 12, 0.2, 0.37}, {"pair", "impulse", 24, 0.2, 0.37},
-                                     {"pair", "flip", 12, 0.2, 0.37},    {"seed", "flip", 12, 0.2, 0.37}};
-    if (options.short_mode) settings = {settings[0], settings[2]};
+    std::vector<Setting> settings = {
+        {"pair", "impulse", 6, 2, 0, 0},       {"pair", "impulse", 12, 18, 0.1, 0.07},
+        {"pair", "impulse", 12, 2, 0, 0},      {"pair", "impulse", 12, 2, 0.2, 0.37},
+        {"pair", "impulse", 24, 2, 0.2, 0.37}, {"pair", "flip", 12, 2, 0.2, 0.37},
+        {"seed", "flip", 12, 2, 0.2, 0.37},
+    };
+    if (options.short_mode) settings.resize(2);
     for (const Setting& setting : settings) {
         Case c;
         c.rule = setting.rule;
         c.coupling = setting.coupling;
         c.r_over_dx = setting.r_over_dx;
+        c.h_over_dx = setting.h_over_dx;
         c.offset = setting.offset;
         c.shift = setting.shift;
         const Case first = c;
@@ -213,11 +223,13 @@ void report_orders(Bench& bench, const ReportOptions& options, ReportChecks& che
         while (std::next_permutation(c.order.begin(), c.order.end()))
             largest = std::max(largest, difference(reference, first.order, bench.run(c), c.order));
         const std::string label = fmt::format("{}/{}", c.rule, c.coupling);
-        fmt::print("{:14} {:5} {:7} {:6} {:11.1e}\n", label, c.r_over_dx, c.offset, c.shift, largest);
+        fmt::print("{:14} {:5} {:5} {:7} {:6} {:14.1e} {:9.1e} {:11.1e}\n", label, c.r_over_dx, c.h_over_dx,
+                   c.offset, c.shift, reference.approach_left, reference.linear_error, largest);
+        checks.at_most(fmt::format("{} R/dx {} h/dx {} offset {}: change by the order", label, c.r_over_dx,
+                                   c.h_over_dx, c.offset),
+                       largest, 0.0);
         if (c.rule == "pair")
-            checks.at_most(
-                fmt::format("{} R/dx {} offset {}: bits changed by the order", label, c.r_over_dx, c.offset),
-                largest, 0.0);
+            checks.at_most("    approach left over speed before", reference.approach_left, 0.0);
     }
 }
 
