@@ -24,6 +24,42 @@ struct RigidMotion {
     }
 };
 
+/// Errors against the rigid answer [%]: of x, of the spin, and of the spin in units of its last value.
+struct Descent {
+    std::vector<double> time, x_error, spin_error;  ///< spin: in % of the last
+    double beta = 0, x = 0, spin = 0, worst_spin = 0;
+    double height_range = 0;  ///< [m]
+    double flattening = 0;    ///< mean of 1 - y/R [%]
+};
+
+inline Descent roll(Report& report, const Incline& c) {
+    std::vector<std::string> overrides = {
+        override_of("mu", c.mu), override_of("stiffness_factor", c.stiffness),
+        override_of("cells_per_diameter", c.cells), "params.filling=" + c.filling};
+    Descent d;
+    d.beta = inertia_of(folder + "/rolling.yaml", overrides);
+    overrides.push_back(override_of("inertia", d.beta));
+    const std::vector<GrainRow> rows = rows_of(report.run("/rolling.yaml", overrides, "rolling"), 0);
+    const RigidMotion exact(c.mu, d.beta);
+    const double start = rows.front().position[0], end = rows.back().time;
+    double low = INFINITY, high = 0.0;
+    for (const GrainRow& row : rows) {
+        const double y = row.position[1], t = row.time;
+        low = std::min(low, y);
+        high = std::max(high, y);
+        d.flattening += 100.0 * (1.0 - y / radius) / static_cast<double>(rows.size());
+        if (t < 0.1) continue;
+        d.time.push_back(t);
+        d.x_error.push_back(100.0 * ((row.position[0] - start) / (0.5 * exact.acceleration * t * t) - 1.0));
+        d.spin_error.push_back(100.0 * (-row.omega - exact.spin_rate * t) / (exact.spin_rate * end));
+        if (t > 0.2) d.worst_spin = std::max(d.worst_spin, std::abs(d.spin_error.back()));
+    }
+    d.height_range = high - low;
+    d.x = d.x_error.back();
+    d.spin = d.spin_error.back();
+    return d;
+}
+
 inline void report_rolling(Report& report) {
     // Bounds of the errors at 1 s [%], of x and of the spin, and of the spin on the way.
     const std::vector<Incline> all = {
@@ -48,44 +84,21 @@ inline void report_rolling(Report& report) {
         "{:34} {:>8} {:>9} {:>9} {:>9} {:>12} {:>12}\n",
         "", "I/(MR^2)", "x [%]", "spin [%]", "worst [%]", "y range [mm]", "1 - y/R [%]");
     for (const Incline& c : cases) {
-        std::vector<std::string> overrides = {
-            override_of("mu", c.mu), override_of("stiffness_factor", c.stiffness),
-            override_of("cells_per_diameter", c.cells), "params.filling=" + c.filling};
-        const double beta = inertia_of(folder + "/rolling.yaml", overrides);
-        overrides.push_back(override_of("inertia", beta));
-        const std::vector<GrainRow> rows = rows_of(report.run("/rolling.yaml", overrides, "rolling"), 0);
-        const RigidMotion exact(c.mu, beta);
-        const double start = rows.front().position[0], end = rows.back().time;
-        double low = INFINITY, high = 0.0, height = 0.0, worst = 0.0, x_error = 0.0, spin_error = 0.0;
-        ChartLine spins{fmt::format("mu {}, stiffness x{}, {} {}", c.mu, c.stiffness, c.filling, c.cells),
-                        {},
-                        {},
-                        static_cast<int>(spin.lines.size())};
-        ChartLine places = spins;
-        for (const GrainRow& row : rows) {
-            const double y = row.position[1], t = row.time;
-            low = std::min(low, y);
-            high = std::max(high, y);
-            height += y / static_cast<double>(rows.size());
-            if (t < 0.1) continue;
-            x_error = 100.0 * ((row.position[0] - start) / (0.5 * exact.acceleration * t * t) - 1.0);
-            const double spin_of_end = 100.0 * (-row.omega - exact.spin_rate * t) / (exact.spin_rate * end);
-            spin_error = spin_of_end * end / t;
-            if (t > 0.2) worst = std::max(worst, std::abs(spin_of_end));
-            spins.x.push_back(t), spins.y.push_back(spin_of_end);
-            places.x.push_back(t), places.y.push_back(x_error);
-        }
+        const Descent d = roll(report, c);
+        const std::string name =
+            fmt::format("mu {}, stiffness x{}, {} {}", c.mu, c.stiffness, c.filling, c.cells);
         if (c.mu == 0.3 && c.filling == "rings") {
-            spin.lines.push_back(spins);
-            place.lines.push_back(places);
+            const int color = static_cast<int>(spin.lines.size());
+            spin.lines.push_back({name, d.time, d.spin_error, color});
+            place.lines.push_back({name, d.time, d.x_error, color});
         }
-        fmt::print("{:34} {:8.4f} {:9.2f} {:9.2f} {:9.2f} {:12.2f} {:12.2f}\n", spins.label, beta, x_error,
-                   spin_error, worst, 1e3 * (high - low), 100.0 * (1.0 - height / radius));
-        table.add(c.filling, {c.mu, c.stiffness, static_cast<double>(c.cells), beta, x_error, spin_error,
-                              worst, high - low, 100.0 * (1.0 - height / radius)});
-        report.checks.at_most(spins.label + ": |x error| [%]", std::abs(x_error), c.x_bound);
-        report.checks.at_most(spins.label + ": |spin error| [%]", std::abs(spin_error), c.spin_bound);
-        report.checks.at_most(spins.label + ": worst spin error [%]", worst, c.course_bound);
+        fmt::print("{:34} {:8.4f} {:9.2f} {:9.2f} {:9.2f} {:12.2f} {:12.2f}\n", name, d.beta, d.x, d.spin,
+                   d.worst_spin, 1e3 * d.height_range, d.flattening);
+        table.add(c.filling, {c.mu, c.stiffness, static_cast<double>(c.cells), d.beta, d.x, d.spin,
+                              d.worst_spin, d.height_range, d.flattening});
+        report.checks.at_most(name + ": |x error| [%]", std::abs(d.x), c.x_bound);
+        report.checks.at_most(name + ": |spin error| [%]", std::abs(d.spin), c.spin_bound);
+        report.checks.at_most(name + ": worst spin error [%]", d.worst_spin, c.course_bound);
     }
     table.write(report.options.directory, "rolling");
     draw_charts({place, spin}, 2, report.options.directory + "/rolling.png");
