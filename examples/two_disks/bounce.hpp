@@ -118,8 +118,8 @@ inline Bounce measure(const Case& c, const RunRecord& record) {
     b.peak = filtered_peak(first, 0.08 * time_unit) / force_unit;
     b.spin = std::max(std::abs(first.back().omega), c.size_ratio * std::abs(second.back().omega)) * radius /
              c.speed;
-    b.slip_ratio = std::abs(across(change[0], change[1])) / normal;
-    b.spin_ratio = inertia * std::abs(first.back().omega) * radius / normal;
+    b.slip_ratio = across(change[0], change[1]) / normal;
+    b.spin_ratio = inertia * first.back().omega * radius / normal;
     b.force_mismatch /= largest;
     const EnergyBudget& energy = record.history.back().energy;
     b.contact_loss = energy.contact_loss / record.history[0].energy.kinetic;
