@@ -150,6 +150,11 @@ inline void report_collisions(Report& report) {
                        "kinetic_kept", "slip_error_percent", "spin_error_percent"});
     report_spin(report, table);
     report_friction(report, table);
+    // Unequal in all respects, with friction, out of the planes of the grid: for the momenta.
+    report.run("/collision.yaml",
+               {"params.size_ratio=0.6", "params.density_ratio=4", "params.stiffness_ratio=10",
+                "params.mu=0.3", "params.angle=25", "params.rise=40"},
+               "collision");
     table.write(report.options.directory, "collisions");
 }
 

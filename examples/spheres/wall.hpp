@@ -152,7 +152,6 @@ inline void report_variants(Report& report, ReportTable& table) {
         {"calibration none", {"params.calibration=none"}},
         {"horizon_ratio 2", {"params.horizon_ratio=2"}},
         {"horizon_ratio 2.5", {"params.horizon_ratio=2.5"}},
-        {"max_sweeps 50", {"params.max_sweeps=50"}},
         {"rule seed", {"params.rule=seed"}},
         {"coupling flip", {"params.coupling=flip"}}};
     if (report.options.short_mode) return;
