@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "grid/error.hpp"
 #include "src/deck/read_deck.hpp"
 
 namespace quern {
@@ -13,7 +14,8 @@ RunRecord run_case(const std::string& deck, const std::vector<std::string>& over
     RunOptions options;
     options.directory = directory;
     options.threads = 1;
-    run_deck(read_deck(deck, overrides), options, &record);
+    if (run_deck(read_deck(deck, overrides), options, &record) == RunOutcome::interrupted)
+        throw SimulationError("interrupted; the results so far are in " + directory);
     return record;
 }
 

@@ -8,7 +8,8 @@
 
 namespace quern {
 
-/// Runs `deck` with `overrides` ("params.mu=0.3", as --set) on one thread into `directory`.
+/// Runs `deck` with `overrides` ("params.mu=0.3", as --set) on one thread into `directory`. Throws
+/// SimulationError if the run is interrupted: half a run has no numbers to report.
 RunRecord run_case(const std::string& deck, const std::vector<std::string>& overrides,
                    const std::string& directory);
 
