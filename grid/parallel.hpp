@@ -44,11 +44,14 @@ T sum(std::size_t n, const T& zero, Term&& term) {
     constexpr std::size_t block = 256;
     const std::size_t n_blocks = (n + block - 1) / block;
     std::vector<T> partial(n_blocks, zero);
-    for_each(n_blocks, [&](std::size_t b) {
-        T total = zero;
-        for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
-        partial[b] = total;
-    }, 16);
+    for_each(
+        n_blocks,
+        [&](std::size_t b) {
+            T total = zero;
+            for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
+            partial[b] = total;
+        },
+        16);
     T total = zero;
     for (const T& part : partial) total += part;
     return total;

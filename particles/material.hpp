@@ -8,7 +8,12 @@ namespace quern {
 
 enum class ForceModel { lps, bond_based };
 enum class PlaneState { strain, stress };
-enum class Influence { constant, inverse, conical, gaussian };  ///< 1, 1/r, 1 - r, exp(-(2 r)^2); r = xi/horizon
+enum class Influence {
+    constant,
+    inverse,
+    conical,
+    gaussian
+};  ///< 1, 1/r, 1 - r, exp(-(2 r)^2); r = xi/horizon
 enum class Calibration { none, discrete };
 enum class SurfaceCorrection { none, volume };
 
@@ -24,7 +29,8 @@ struct Material {
     Influence influence = Influence::conical;
     Calibration calibration = Calibration::discrete;
     SurfaceCorrection surface_correction = SurfaceCorrection::none;
-    double bond_damping = 0.0;  ///< Kelvin-Voigt time: stress of the strain rate = bond_damping * stiffness [s]
+    double bond_damping =
+        0.0;  ///< Kelvin-Voigt time: stress of the strain rate = bond_damping * stiffness [s]
     double critical_stretch = std::numeric_limits<double>::infinity();  ///< bonds break above it, in tension
 };
 

@@ -12,13 +12,14 @@ namespace quern {
 struct Frame {
     int dimension = 2;
     std::int64_t step = 0;
-    double time = 0.0;                  ///< [s]
-    std::vector<double> position;       ///< [n * dimension] [m]
-    std::vector<double> velocity;       ///< [n * dimension] [m/s]
-    std::vector<double> damage;         ///< [n] fraction of broken bonds
-    std::vector<double> stress;         ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
-    std::vector<std::int32_t> grain;    ///< [n]
-    std::vector<double> volume;         ///< [n] reference volume [m^2 | m^3]
+    double time = 0.0;             ///< [s]
+    std::vector<double> position;  ///< [n * dimension] [m]
+    std::vector<double> velocity;  ///< [n * dimension] [m/s]
+    std::vector<double> damage;    ///< [n] fraction of broken bonds
+    std::vector<double>
+        stress;  ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
+    std::vector<std::int32_t> grain;  ///< [n]
+    std::vector<double> volume;       ///< [n] reference volume [m^2 | m^3]
     std::size_t n() const { return grain.size(); }
 };
 
@@ -26,11 +27,11 @@ struct Frame {
 /// kinetic + elastic + gravity + damping + friction + contact_loss + fracture + transfer_loss - external_work
 /// - (its value at the start) = residual.
 struct EnergyBudget {
-    double kinetic = 0, elastic = 0, gravity = 0;  ///< stored
+    double kinetic = 0, elastic = 0, gravity = 0;                                         ///< stored
     double damping = 0, friction = 0, contact_loss = 0, fracture = 0, transfer_loss = 0;  ///< dissipated
-    double external_work = 0;      ///< by loads, constraints and moving walls
-    double residual = 0;           ///< what is missing
-    double throughput = 0;         ///< largest stored plus dissipated energy that changed hands so far
+    double external_work = 0;  ///< by loads, constraints and moving walls
+    double residual = 0;       ///< what is missing
+    double throughput = 0;     ///< largest stored plus dissipated energy that changed hands so far
 };
 
 struct HistoryRow {
@@ -44,21 +45,22 @@ struct GrainRow {
     double time = 0;
     int grain = 0;
     double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};
-    double angle = 0;                ///< about z, unwrapped [rad]
-    double omega = 0;                ///< about z [rad/s]
-    double force[3] = {0, 0, 0};     ///< contact force, mean since the row before [N]
+    double angle = 0;             ///< about z, unwrapped [rad]
+    double omega = 0;             ///< about z [rad/s]
+    double force[3] = {0, 0, 0};  ///< contact force, mean since the row before [N]
 };
 
 struct Summary {
-    std::string version, title, deck_hash, state_hash, outcome;  ///< outcome: "done", "interrupted", "failed: ..."
+    std::string version, title, deck_hash, state_hash,
+        outcome;  ///< outcome: "done", "interrupted", "failed: ..."
     int dimension = 2, threads = 1;
     std::int64_t steps = 0, n_particles = 0, n_bonds = 0, n_grains = 0;
     double simulated_time = 0, time_step = 0, stable_step = 0;
     double wall_seconds = 0, ns_per_particle_step = 0, peak_memory_bytes = 0;
     std::vector<std::pair<std::string, double>> stages;  ///< seconds a stage, in the order of the step
     EnergyBudget energy;
-    double residual_relative = 0;           ///< |residual| / throughput, largest over the run
-    double momentum_error_linear = 0;       ///< |p - p0 - impulses| / momentum scale, largest over the run
+    double residual_relative = 0;      ///< |residual| / throughput, largest over the run
+    double momentum_error_linear = 0;  ///< |p - p0 - impulses| / momentum scale, largest over the run
     double momentum_error_angular = 0;
     std::vector<std::pair<std::string, std::int64_t>> warnings;  ///< text (with the first step), count
 };

@@ -7,11 +7,11 @@
 namespace quern {
 
 struct RenderOptions {
-    std::string directory;          ///< of a finished run
-    std::string file;               ///< .png; with frame = "all": pattern, number goes before ".png"
-    std::string field = "speed";    ///< speed, velocity_x.., damage, grain, von_mises, pressure, stress_xx..,
-                                    ///< principal_difference, displacement
-    std::string frame = "last";     ///< last, all, or a number from 0
+    std::string directory;        ///< of a finished run
+    std::string file;             ///< .png; with frame = "all": pattern, number goes before ".png"
+    std::string field = "speed";  ///< speed, velocity_x.., damage, grain, von_mises, pressure, stress_xx..,
+                                  ///< principal_difference, displacement
+    std::string frame = "last";   ///< last, all, or a number from 0
     int width = 1200, height = 900;
 };
 
@@ -23,7 +23,7 @@ std::vector<std::string> render(const RenderOptions& options);
 struct ChartLine {
     std::string label;
     std::vector<double> x, y;
-    int color = 0;       ///< index into the colour cycle
+    int color = 0;  ///< index into the colour cycle
     bool dashed = false;
     bool markers = false;
     bool line = true;
