@@ -26,10 +26,12 @@ struct Profile {
 
     double operator()(const Tangential& s) const { return c0 + c1.dot(s) + c2 * s.squaredNorm(); }
 
-    /// Where it is level, as far as two cells away; nothing for a plane.
+    /// Where it is level; nothing for a plane, or if that is more than a cell away, where a fit knows little.
     std::optional<Tangential> apex() const {
         if (c2 == 0.0) return std::nullopt;
-        return Tangential((-c1 / (2.0 * c2)).cwiseMax(-2.0).cwiseMin(2.0));
+        const Tangential s = -c1 / (2.0 * c2);
+        if (s.cwiseAbs().maxCoeff() > 1.0) return std::nullopt;
+        return s;
     }
 };
 
