@@ -162,7 +162,7 @@ void run_variants(const std::string& directory, ReportTable& table) {
         {"tolerance 1e-4", {"tolerance=1e-4"}},
         {"tolerance 1e-5", {"tolerance=1e-5"}},
         {"no drag", {"drag=0"}},
-        {"stiffness x4", {"stiffness=8e6"}}};
+        {"stiffness x4", {"stiffness=8 MPa"}}};
     for (const auto& [label, overrides] : variants) {
         Case c{5, 3, label, overrides};
         c.overrides.push_back("t_end=3");

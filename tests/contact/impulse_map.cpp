@@ -107,7 +107,39 @@ void check_rigid_motion() {
     CHECK(worst < 1e-12);  // measured 1.3e-14, bound 1e-12 [m/s]
 }
 
+/// Weights of the support of every slot: N of the linear functions, N^2 in the impulse map, q inside.
+template <int Dim>
+void check_weights() {
+    for (const Filling<Dim>& filling : fillings<Dim>())
+        for (const bool nodal : {false, true}) {
+            World<Dim> world = make_pair_of_grains<Dim>(filling.shape, aims<Dim>(1)[0], 0.0, 1.0);
+            ContactNodeOptions options;
+            options.nodal = nodal;
+            options.interior_weight = 0.3;
+            ContactNodes<Dim> nodes(world.grid, options);
+            nodes.find(world.scene());
+            double worst = 0.0;
+            int at_surface = 0, inside = 0;
+            for (const Slot<Dim>& slot : nodes.slots())
+                for (int k = 0; k < slot.n_support; ++k) {
+                    const Support<Dim>& e = slot.support[k];
+                    const double N = (Vec<Dim>::Ones() - e.d.cwiseAbs() / world.grid.h()).prod();
+                    const double w = nodal ? N : (e.surface >= 0 ? N * N : 0.3 * N * N);
+                    worst = std::max({worst, std::abs(e.N - N), std::abs(e.w - w)});
+                    ++(e.surface >= 0 ? at_surface : inside);
+                }
+            CHECK(worst < 1e-13);  // measured 1.8e-15, bound 1e-13
+            CHECK(at_surface > 10);
+            CHECK(inside > 10);
+        }
+}
+
 }  // namespace
+
+TEST_CASE("Impulse map: weights of particles at the surface and inside") {
+    check_weights<2>();
+    check_weights<3>();
+}
 
 TEST_CASE("Impulse map: the inverse mass is what an impulse does to the velocity") {
     check_inverse_mass<2>();

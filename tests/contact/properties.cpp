@@ -265,10 +265,10 @@ TEST_CASE("Contact: every switch of the pair rule changes the result") {
             return world.particles.v;
         };
         const std::vector<Vec<Dim>> with = collide({});
-        for (const auto& [name, member] : switches) {
-            CAPTURE(name);
+        for (const auto& ingredient : switches) {
+            CAPTURE(ingredient.first);
             GridContactOptions options;
-            options.*member = false;
+            options.*ingredient.second = false;
             CHECK(largest_difference<Dim>(collide(options), with) > 1e-6);
         }
         GridContactOptions options;

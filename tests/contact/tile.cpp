@@ -152,6 +152,39 @@ TEST_CASE("Tile: ball against wall") {
     for (const Filling<3>& filling : fillings<3>()) check(filling);
 }
 
+TEST_CASE("Tile: nearly flat grains meet nearer to the node, on a wall where they do") {
+    const Shape<2> shape = make_rings_shape(radius, 40);
+    const double h = 2.0 * shape.dx, beside = 0.4 * h;  // of the contact, from the node
+    const double q2 = h / radius;                       // of two equal disks: 0.05, below the floor of 0.1
+    const Vec<2> node = h * Vec<2>::Constant(48.0), foot = node + Vec<2>(beside, 0.0);
+    const Vec<2> up(0.0, radius);
+    const auto tile_at_node = [&](World<2>& world) {
+        ContactNodes<2> nodes(world.grid, {});
+        nodes.find(world.scene());
+        const Mat<2> rotation = Mat<2>::Identity();
+        for (int i = 0; i < nodes.n_nodes(); ++i) {
+            const std::span<const int> slots = nodes.slots_of(i);
+            const Slot<2>& first = nodes.slots()[slots[0]];
+            if (first.index != IntVec<2>(48, 48)) continue;
+            const TileSide<2> A{&first, &world.grains[first.grain], &rotation};
+            if (slots.size() < 2) return make_wall_tile<2>(A, world.walls[0], 0.0, h, {});
+            const Slot<2>& second = nodes.slots()[slots[1]];
+            return make_tile<2>(A, {&second, &world.grains[second.grain], &rotation}, h, {});
+        }
+        return std::optional<Tile<2>>();
+    };
+    World<2> pair(make_grid<2>(h, 96)), wall(make_grid<2>(h, 96));
+    pair.add(shape, foot + up, Vec<2>::Zero());
+    pair.add(shape, foot - up, Vec<2>::Zero());
+    wall.add(shape, foot + up, Vec<2>::Zero());
+    wall.walls.push_back({node, Vec<2>::Unit(1), Vec<2>::Zero(), 0.0});
+    const auto with_grain = tile_at_node(pair), with_wall = tile_at_node(wall);
+    REQUIRE(with_grain.has_value());
+    REQUIRE(with_wall.has_value());
+    CHECK(std::abs(with_grain->point[0] - beside * q2 / 0.1) < 0.01 * h);  // measured 0.0011 h, bound 0.01 h
+    CHECK(std::abs(with_wall->point[0] - beside) < 0.01 * h);              // measured 0.0026 h, bound 0.01 h
+}
+
 TEST_CASE("Tile: a block on a tilted wall is exact") {
     const Shape<2> block = make_lattice_shape<2>(
         Polygon({{-0.5, -0.25}, {0.5, -0.25}, {0.5, 0.25}, {-0.5, 0.25}}), Vec<2>::Constant(1.0 / 12.0));
