@@ -37,11 +37,10 @@ void for_each(std::size_t n, Body&& body, std::size_t serial_below = 2) {
     for (std::ptrdiff_t i = 0; i < count; ++i) body(static_cast<std::size_t>(i));
 }
 
-/// Sum of term(i) over [0, n) in blocks of 256, added block by block: the same bits for any number of
-/// threads. T needs `+=` and a zero value given as `zero`.
+/// Sum of term(i) over [0, n) in blocks, added block by block: the same bits for any number of threads. T
+/// needs `+=` and a zero value given as `zero`. Terms that are work for a thread each want `block` 1.
 template <class T, class Term>
-T sum(std::size_t n, const T& zero, Term&& term) {
-    constexpr std::size_t block = 256;
+T sum(std::size_t n, const T& zero, Term&& term, std::size_t block = 256) {
     const std::size_t n_blocks = (n + block - 1) / block;
     std::vector<T> partial(n_blocks, zero);
     for_each(
@@ -51,7 +50,7 @@ T sum(std::size_t n, const T& zero, Term&& term) {
             for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
             partial[b] = total;
         },
-        16);
+        block == 1 ? 2 : 16);
     T total = zero;
     for (const T& part : partial) total += part;
     return total;

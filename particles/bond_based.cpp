@@ -27,7 +27,7 @@ Material made_of_springs(const Material& material) {
 }  // namespace
 
 template <int Dim>
-BondBased<Dim>::BondBased(const Shape<Dim>& shape, const Material& material, Kernel kernel)
+BondBased<Dim>::BondBased(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel)
     : BondNetwork<Dim>(shape, made_of_springs<Dim>(material), kernel) {
     const Bonds<Dim>& bonds = this->bonds_;
     const double m = material.calibration == Calibration::discrete
@@ -44,7 +44,7 @@ BondBased<Dim>::BondBased(const Shape<Dim>& shape, const Material& material, Ker
 
 template <int Dim>
 void BondBased<Dim>::add_internal_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const {
-    if (this->kernel_ == Kernel::fast) return this->fast_.add_elastic_forces(grain, f);
+    if (this->kernel_.kernel == Kernel::fast) return this->fast_.add_elastic_forces(grain, f);
     const Bonds<Dim>& bonds = this->bonds_;
     this->add_reference_forces(grain, f, [&](int, int, int k, double now) {
         return C_ * bonds.weight[k] * (now - bonds.length[k]);

@@ -29,7 +29,7 @@ class BondBased : public BondNetwork<Dim> {
   public:
     /// Throws InputError for a family that cannot carry load, for moduli or density that are not positive,
     /// and for a shear modulus more than 1 % from the one that springs have.
-    BondBased(const Shape<Dim>& shape, const Material& material, Kernel kernel = Kernel::fast);
+    BondBased(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel = {});
 
     /// f [n] += internal forces [N; 2D: N/m]
     void add_internal_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;

@@ -223,7 +223,7 @@ void BondKernel<Dim>::add_forces(const GrainView<Dim>& grain, double factor, std
     if (masked) {
         for (int i = 0; i < n; ++i) {
             const int bond = first_[i], size = first_[i + 1] - bond;
-            for (int k = 0; k < size; ++k) scratch.mask[row_[i] + k] = grain.alive[bond + k] != 0 ? 1.0 : 0.0;
+            for (int k = 0; k < size; ++k) scratch.mask[row_[i] + k] = grain.alive[bond + k] ? 1.0 : 0.0;
             for (int slot = row_[i] + size; slot < row_[i + 1]; ++slot) scratch.mask[slot] = 0.0;
         }
         evaluate<Dim, rate, true>(slots, scratch);

@@ -11,7 +11,7 @@
 namespace quern {
 
 template <int Dim>
-BondNetwork<Dim>::BondNetwork(const Shape<Dim>& shape, const Material& material, Kernel kernel)
+BondNetwork<Dim>::BondNetwork(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel)
     : material_(material), kernel_(kernel), bonds_(make_bonds(shape, material)) {
     const auto check = [&](const char* key, double value) {
         if (!(value > 0.0))
@@ -27,6 +27,7 @@ template <int Dim>
 void BondNetwork<Dim>::set_stiffness(BondStiffness stiffness) {
     stiffness_ = std::move(stiffness);
     fast_ = BondKernel<Dim>(bonds_, stiffness_);
+    if (has_batches()) batch_ = BondBatch<Dim>(bonds_, stiffness_, kernel_.instructions);
 
     const std::size_t n = bonds_.X.size();
     std::vector<double> mass(n * Dim);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "particles/bond_batch.hpp"
 #include "particles/bond_kernel.hpp"
 #include "particles/bonds.hpp"
 #include "particles/grain_view.hpp"
@@ -13,9 +14,13 @@
 
 namespace quern {
 
-/// How internal forces are evaluated: the fast kernel, or the formulas of the model as printed, for
-/// comparison.
+/// How internal forces are evaluated: by the fast loops, or by the formulas of the model as printed, for
+/// comparison; and with which instructions batches are.
 enum class Kernel { fast, reference };
+struct KernelChoice {
+    Kernel kernel = Kernel::fast;
+    Instructions instructions = Instructions::best;
+};
 
 /// Base of the bond models, not for use by itself. A grain of scale s is evaluated at y/s:
 ///
@@ -32,6 +37,17 @@ class BondNetwork {
     /// the two ends enter as 1/m_i + 1/m_j: no net force or moment; none in rigid motion, rotation included;
     /// the power is -2 bond_damping times the energy of the rates, never positive.
     void add_damping_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;
+
+    /// Forces of up to eight grains at once, where Kernel::fast is chosen: what add_internal_forces adds,
+    /// after the bonds that are stretched too far have broken (cleared in `alive`, [n_bonds], empty: none
+    /// can).
+    BrokenBonds add_batch_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
+        return batch_.add_elastic_forces(batch, alive, material_.critical_stretch);
+    }
+    void add_batch_damping(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
+        batch_.add_viscous_forces(batch, alive, material_.bond_damping);
+    }
+    bool has_batches() const { return kernel_.kernel == Kernel::fast; }
 
     /// f [n] += derivative of the internal forces at the reference state along u [n] [m], at scale 1.
     void add_linear_forces(std::span<const Vec<Dim>> u, std::span<Vec<Dim>> f) const;
@@ -63,7 +79,7 @@ class BondNetwork {
     const Bonds<Dim>& bonds() const { return bonds_; }
 
   protected:
-    BondNetwork(const Shape<Dim>& shape, const Material& material, Kernel kernel);
+    BondNetwork(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel);
 
     /// To be called once by the constructor of a model.
     void set_stiffness(BondStiffness stiffness);
@@ -74,16 +90,17 @@ class BondNetwork {
     void add_reference_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f, Density&& density) const;
 
     bool is_alive(const GrainView<Dim>& grain, int bond) const {
-        return grain.alive.empty() || grain.alive[bond] != 0;
+        return grain.alive.empty() || grain.alive[bond];
     }
     Vec<Dim> bond_vector(const GrainView<Dim>& grain, int i, int j) const {
         return (grain.x[j] - grain.x[i]) / grain.scale;
     }
 
     Material material_;
-    Kernel kernel_;
+    KernelChoice kernel_;
     Bonds<Dim> bonds_;
     BondKernel<Dim> fast_;
+    BondBatch<Dim> batch_;
 
   private:
     BondStiffness stiffness_;

@@ -3,18 +3,37 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "grid/vec.hpp"
 
 namespace quern {
 
+/// Which bonds of a grain are intact: one bit of a byte a bond. The other bits of the bytes belong to the
+/// grains that share a batch with it (bond_batch.hpp). Made from bytes alone, it reads their lowest bit.
+class BondBits {
+  public:
+    BondBits() = default;
+    BondBits(std::span<const std::uint8_t> bytes, int bit = 0) : bytes_(bytes), bit_(bit) {}
+    BondBits(const std::vector<std::uint8_t>& bytes) : BondBits(std::span(bytes)) {}
+
+    bool empty() const { return bytes_.empty(); }  ///< all intact
+    bool operator[](int bond) const { return (bytes_[static_cast<std::size_t>(bond)] >> bit_ & 1) != 0; }
+    std::span<const std::uint8_t> bytes() const { return bytes_; }
+    int bit() const { return bit_; }
+
+  private:
+    std::span<const std::uint8_t> bytes_;
+    int bit_ = 0;
+};
+
 /// Current state of one grain, read only. The grain is `scale` times its shape; n nodes, n_bonds bonds.
 template <int Dim>
 struct GrainView {
     double scale = 1.0;
-    std::span<const Vec<Dim>> x;          ///< [n] current positions [m]
-    std::span<const Vec<Dim>> v;          ///< [n] velocities [m/s]; read by damping only, else may be empty
-    std::span<const std::uint8_t> alive;  ///< [n_bonds] 0 = broken; empty = all intact
+    std::span<const Vec<Dim>> x;  ///< [n] current positions [m]
+    std::span<const Vec<Dim>> v;  ///< [n] velocities [m/s]; read by damping only, else may be empty
+    BondBits alive;               ///< [n_bonds]; empty = all intact
 };
 
 }  // namespace quern

@@ -6,7 +6,7 @@
 namespace quern {
 
 template <int Dim>
-Lps<Dim>::Lps(const Shape<Dim>& shape, const Material& material, Kernel kernel)
+Lps<Dim>::Lps(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel)
     : BondNetwork<Dim>(shape, material, kernel) {
     const Bonds<Dim>& bonds = this->bonds_;
     constexpr double n = Dim;
@@ -30,7 +30,7 @@ Lps<Dim>::Lps(const Shape<Dim>& shape, const Material& material, Kernel kernel)
 
 template <int Dim>
 void Lps<Dim>::add_internal_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const {
-    if (this->kernel_ == Kernel::reference) return add_printed_forces(grain, f);
+    if (this->kernel_.kernel == Kernel::reference) return add_printed_forces(grain, f);
     this->fast_.add_elastic_forces(grain, f);
 }
 

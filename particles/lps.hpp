@@ -35,7 +35,7 @@ template <int Dim>
 class Lps : public BondNetwork<Dim> {
   public:
     /// Throws InputError for a family that cannot carry load, or for moduli or density that are not positive.
-    Lps(const Shape<Dim>& shape, const Material& material, Kernel kernel = Kernel::fast);
+    Lps(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel = {});
 
     /// f [n] += internal forces [N; 2D: N/m]
     void add_internal_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;

@@ -14,7 +14,7 @@ using PeridynamicModel = std::variant<Lps<Dim>, BondBased<Dim>>;
 /// The model that material.model names, for one shape. Throws InputError as its constructor does.
 template <int Dim>
 PeridynamicModel<Dim> make_model(const Shape<Dim>& shape, const Material& material,
-                                 Kernel kernel = Kernel::fast) {
+                                 const KernelChoice& kernel = {}) {
     if (material.model == ForceModel::bond_based) return BondBased<Dim>(shape, material, kernel);
     return Lps<Dim>(shape, material, kernel);
 }

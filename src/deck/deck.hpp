@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "particles/instructions.hpp"
 #include "particles/material.hpp"
 #include "src/deck/expression.hpp"
 
@@ -133,6 +134,14 @@ struct TimeDeck {
     Place place;
 };
 
+/// How forces inside the grains are evaluated.
+enum class ForceKernel { automatic, single, reference };
+struct ComputeDeck {
+    ForceKernel kernel = ForceKernel::automatic;
+    Instructions instructions = Instructions::best;
+    Place place;
+};
+
 struct OutputDeck {
     double interval = 0.0;          ///< frames of results.h5 [s]; 0: 100 frames in the run
     double history_interval = 0.0;  ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
@@ -158,6 +167,7 @@ struct Deck {
     std::vector<ConstraintDeck> constraints;
     PrepareDeck prepare;
     TimeDeck time;
+    ComputeDeck compute;
     OutputDeck output;
 };
 

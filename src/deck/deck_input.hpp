@@ -47,6 +47,7 @@ struct DeckInput {
     std::string title;
     int dimension = 2;
     TimeDeck time;
+    ComputeDeck compute;
     Numbers3 gravity{};
     std::vector<MaterialInput> materials;
     std::vector<ShapeDeck> shapes;

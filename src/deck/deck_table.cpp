@@ -19,6 +19,23 @@ Table<TimeDeck> time_table() {
     return t;
 }
 
+Table<ComputeDeck> compute_table() {
+    using T = ComputeDeck;
+    Table<T> t;
+    t.word(
+        "kernel", &T::kernel, {"auto", "single", "reference"},
+        "Bond forces: auto: batches of eight grains of a shape; single: one by one; reference: as printed");
+    t.word("instructions", &T::instructions, {"auto", "avx512", "avx2", "plain"},
+           "Instruction set of the batches; auto: the widest that this machine has");
+    t.finish = [](T& compute, const Cursor& at, const Context&) {
+        compute.place = at.place();
+        if (!has_instructions(compute.instructions))
+            throw InputError(at.where(), "an instruction set that this machine lacks",
+                             "auto, or one that it has");
+    };
+    return t;
+}
+
 Table<GridDeck> grid_table() {
     using T = GridDeck;
     Table<T> t;
@@ -292,6 +309,7 @@ Table<DeckInput> make_deck_table() {
     t.list("loads", &T::loads, load_table(), "Body forces");
     t.list("constraints", &T::constraints, constraint_table(), "Prescribed velocities of particles");
     t.section("prepare", &T::prepare, prepare_table(), "Relaxation before the run");
+    t.section("compute", &T::compute, compute_table(), "How forces inside the grains are evaluated");
     t.section("output", &T::output, output_table(), "What is written, and how often");
     t.list("grains", &T::grains, grain_table(), "Grains, numbered from 0 in this order").require();
     return t;

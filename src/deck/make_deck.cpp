@@ -139,6 +139,7 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     deck.prepare = input.prepare;
     deck.prepare.loads.assign(input.prepare.load_entries.begin(), input.prepare.load_entries.end());
     deck.time = input.time;
+    deck.compute = input.compute;
     deck.output = std::move(input.output);
     deck.grains = expand_grains(input.grains, deck.shapes, now);
 

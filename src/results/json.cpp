@@ -111,6 +111,7 @@ std::string make_summary_json(const Summary& summary) {
     block.add("outcome", json_string(summary.outcome));
     block.add("dimension", fmt::format("{}", summary.dimension));
     block.add("threads", fmt::format("{}", summary.threads));
+    block.add("instructions", json_string(summary.instructions));
     block.add("deck_hash", json_string(summary.deck_hash));
     block.add("state_hash", json_string(summary.state_hash));
     block.add("steps", fmt::format("{}", summary.steps));

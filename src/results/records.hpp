@@ -52,7 +52,8 @@ struct GrainRow {
 
 struct Summary {
     std::string version, title, deck_hash, state_hash,
-        outcome;  ///< outcome: "done", "interrupted", "failed: ..."
+        outcome,       ///< "done", "interrupted", "failed: ..."
+        instructions;  ///< of the batches of grains: "avx512", "avx2", "plain"
     int dimension = 2, threads = 1;
     std::int64_t steps = 0, n_particles = 0, n_bonds = 0, n_grains = 0;
     double simulated_time = 0, time_step = 0, stable_step = 0;

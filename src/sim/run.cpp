@@ -90,6 +90,7 @@ class Run {
         summary_.title = deck.title;
         summary_.dimension = Dim;
         summary_.threads = parallel::n_threads();
+        summary_.instructions = batch_loops(deck.compute.instructions).name;
         const std::string resolved = resolved_yaml(deck);
         summary_.deck_hash = text_hash(resolved);
         writer_.write_text("deck.resolved.yaml", resolved);

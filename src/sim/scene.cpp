@@ -43,6 +43,10 @@ CartesianGrid<Dim> make_grid(const GridDeck& deck) {
     return CartesianGrid<Dim>(vec<Dim>(deck.origin), deck.spacing, n, periodic);
 }
 
+KernelChoice kernel_choice(const ComputeDeck& deck) {
+    return {deck.kernel == ForceKernel::reference ? Kernel::reference : Kernel::fast, deck.instructions};
+}
+
 GridContactOptions contact_options(const ContactDeck& deck) {
     GridContactOptions options;
     options.rule = deck.rule == ContactRule::seed ? GridRule::seed : GridRule::pair;
@@ -82,7 +86,7 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         const Shape<Dim>& shape = *scene.shapes[shape_index];
         if (previous != std::pair{shape_index, material_index}) {
             previous = {shape_index, material_index};
-            MaterialGroup<Dim> group{make_model<Dim>(shape, material)};
+            MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute))};
             group.first_grain = static_cast<int>(scene.grains.size());
             group.bond_damping = material.bond_damping;
             group.damped = material.bond_damping > 0.0;
@@ -122,12 +126,29 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         const std::size_t n_bonds =
             static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
         scene.n_bonds += static_cast<std::int64_t>(n_bonds);
-        scene.alive_begin.push_back(scene.alive.size());
-        if (group.breakable) scene.alive.resize(scene.alive.size() + n_bonds, 1);
         scene.grain_of_id[static_cast<std::size_t>(id)] = static_cast<int>(scene.grains.size());
         scene.grains.push_back(grain);
     }
-    scene.alive_begin.push_back(scene.alive.size());
+}
+
+/// Which groups go by batches, and a bit for every bond that can break. Four grains are enough: a batch of
+/// four costs no more than four grains one by one.
+template <int Dim>
+void place_bonds(const Deck& deck, Scene<Dim>& scene) {
+    constexpr int least = 4;
+    scene.bond_bytes.resize(scene.grains.size());
+    for (MaterialGroup<Dim>& group : scene.groups) {
+        group.batched =
+            deck.compute.kernel == ForceKernel::automatic && group.last_grain - group.first_grain >= least;
+        if (!group.breakable) continue;
+        const std::size_t n_bonds =
+            static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
+        for (int g = group.first_grain; g < group.last_grain; ++g) {
+            const int lane = group.batched ? (g - group.first_grain) % batch_lanes : 0;
+            if (lane == 0) scene.alive.resize(scene.alive.size() + n_bonds, 0xff);
+            scene.bond_bytes[static_cast<std::size_t>(g)] = {scene.alive.size() - n_bonds, n_bonds, lane};
+        }
+    }
 }
 
 /// Grains that overlap at the start would be thrown apart: surface particles of two grains must not be nearer
@@ -245,15 +266,17 @@ template <int Dim>
 GrainView<Dim> Scene<Dim>::view(int grain) const {
     const std::size_t first = static_cast<std::size_t>(grains[grain].first);
     const std::size_t count = static_cast<std::size_t>(grains[grain].count);
+    const BondBytes& bytes = bond_bytes[static_cast<std::size_t>(grain)];
     return {grains[grain].scale,
             {particles.x.data() + first, count},
             {particles.v.data() + first, count},
-            {alive.data() + alive_begin[grain], alive_begin[grain + 1] - alive_begin[grain]}};
+            BondBits({alive.data() + bytes.begin, bytes.count}, bytes.bit)};
 }
 
 template <int Dim>
 std::span<std::uint8_t> Scene<Dim>::alive_of(int grain) {
-    return {alive.data() + alive_begin[grain], alive_begin[grain + 1] - alive_begin[grain]};
+    const BondBytes& bytes = bond_bytes[static_cast<std::size_t>(grain)];
+    return {alive.data() + bytes.begin, bytes.count};
 }
 
 template <int Dim>
@@ -298,6 +321,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
         scene->shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
     add_walls(deck, *scene);
     place_grains(deck, *scene);
+    place_bonds(deck, *scene);
     check_overlap(deck, *scene);
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();

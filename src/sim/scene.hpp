@@ -21,6 +21,7 @@ struct MaterialGroup {
     PeridynamicModel<Dim> model;
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
     bool damped = false, breakable = false;
+    bool batched = false;       ///< forces by batches of eight, in the order of the grains
     double bond_damping = 0.0;  ///< [s]
     double density = 0.0;       ///< [kg/m^3]
 };
@@ -49,6 +50,12 @@ struct StepArrays {
     std::vector<Vec<Dim>> drift_before;
 };
 
+/// Where a grain's bits are.
+struct BondBytes {
+    std::size_t begin = 0, count = 0;
+    int bit = 0;
+};
+
 template <int Dim>
 struct Scene {
     explicit Scene(const CartesianGrid<Dim>& background) : grid(background), friction(1, 0.0) {}
@@ -59,9 +66,10 @@ struct Scene {
     std::vector<Grain<Dim>> grains;  ///< sorted by group; Grain::id is the number in the deck
     std::vector<int> grain_of_id;    ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
-    std::vector<Vec<Dim>> x_start;         ///< positions as placed [m]
-    std::vector<std::uint8_t> alive;       ///< bonds of breakable grains, 0 = broken
-    std::vector<std::size_t> alive_begin;  ///< [n_grains] into `alive`
+    std::vector<Vec<Dim>> x_start;  ///< positions as placed [m]
+    /// Bonds of breakable grains. A grain has a bit of each of its bytes; those of a batch share the bytes.
+    std::vector<std::uint8_t> alive;
+    std::vector<BondBytes> bond_bytes;  ///< [n_grains] into `alive`
     std::int64_t n_bonds = 0;
 
     std::vector<Wall<Dim>> walls;
@@ -76,7 +84,7 @@ struct Scene {
     StepArrays<Dim> arrays;
 
     GrainView<Dim> view(int grain) const;
-    std::span<std::uint8_t> alive_of(int grain);
+    std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     const MaterialGroup<Dim>& group_of(int grain) const;
     double elastic_energy() const;  ///< [J; 2D: J/m]
     double stable_step() const;     ///< largest stable time step, bond damping included [s]

@@ -7,6 +7,7 @@
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
+#include "src/sim/internal_forces.hpp"
 
 namespace quern {
 
@@ -25,83 +26,6 @@ class StageTimer {
     double& seconds_;
     Clock::time_point start_;
 };
-
-/// Elastic energy of a grain, and what this step's forces have added to its kinetic energy so far: what the
-/// budget counts at the time of the positions.
-template <int Dim, class Model>
-double energy_now(const Model& model, const GrainView<Dim>& view, const Vec<Dim>* v, double elapsed) {
-    thread_local std::vector<Vec<Dim>> f;
-    f.assign(view.x.size(), Vec<Dim>::Zero());
-    model.add_internal_forces(view, f);
-    double energy = model.elastic_energy(view);
-    for (std::size_t i = 0; i < f.size(); ++i) energy += elapsed * f[i].dot(v[i]);
-    return energy;
-}
-
-template <int Dim>
-void break_bonds(Scene<Dim>& scene, StepContext<Dim>& now) {
-    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
-    const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : scene.particles.v;
-    const double elapsed = now.part_done() * now.dt;
-    for (const MaterialGroup<Dim>& group : scene.groups) {
-        if (!group.breakable) continue;
-        struct Broken {
-            std::int64_t count = 0;
-            double released = 0.0;
-            Broken& operator+=(const Broken& other) {
-                count += other.count;
-                released += other.released;
-                return *this;
-            }
-        };
-        const auto broken = std::visit(
-            [&](const auto& model) {
-                return parallel::sum(static_cast<std::size_t>(group.last_grain - group.first_grain), Broken{},
-                                     [&](std::size_t i) {
-                                         const int g = group.first_grain + static_cast<int>(i);
-                                         const GrainView<Dim> view = scene.view(g);
-                                         thread_local std::vector<std::uint8_t> intact;
-                                         intact.assign(view.alive.begin(), view.alive.end());
-                                         Broken grain;
-                                         grain.count = model.break_bonds(view, scene.alive_of(g));
-                                         if (grain.count == 0) return grain;
-                                         const Vec<Dim>* v = velocity.data() + scene.grains[g].first;
-                                         const GrainView<Dim> before{view.scale, view.x, view.v, intact};
-                                         grain.released = energy_now<Dim>(model, before, v, elapsed) -
-                                                          energy_now<Dim>(model, view, v, elapsed);
-                                         return grain;
-                                     });
-            },
-            group.model);
-        now.newly_broken += broken.count;
-        now.ledger.past.fracture += broken.released;
-    }
-}
-
-template <int Dim>
-void add_internal_forces(Scene<Dim>& scene) {
-    StepArrays<Dim>& a = scene.arrays;
-    for (const MaterialGroup<Dim>& group : scene.groups) {  // one dispatch a group
-        std::visit(
-            [&](const auto& model) {
-                parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain),
-                                   [&](std::size_t i) {
-                                       const int g = group.first_grain + static_cast<int>(i);
-                                       const Grain<Dim>& grain = scene.grains[g];
-                                       const std::size_t first = static_cast<std::size_t>(grain.first);
-                                       const std::size_t count = static_cast<std::size_t>(grain.count);
-                                       std::span<Vec<Dim>> f(a.internal.data() + first, count);
-                                       std::fill(f.begin(), f.end(), Vec<Dim>::Zero());
-                                       model.add_internal_forces(scene.view(g), f);
-                                       if (!group.damped) return;
-                                       std::span<Vec<Dim>> f_damping(a.damping.data() + first, count);
-                                       std::fill(f_damping.begin(), f_damping.end(), Vec<Dim>::Zero());
-                                       model.add_damping_forces(scene.view(g), f_damping);
-                                   });
-            },
-            group.model);
-    }
-}
 
 template <int Dim>
 double value(const Expression& expression, const Vec<Dim>& x, double t) {
@@ -273,8 +197,7 @@ void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
     const double dt = now.first ? 0.5 * now.dt : now.dt;
     {
         const StageTimer timer(now.stages.internal_forces);
-        break_bonds(scene, now);
-        add_internal_forces(scene);
+        compute_internal_forces(scene, now);
     }
     {
         const StageTimer timer(now.stages.loads);

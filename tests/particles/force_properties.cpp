@@ -102,7 +102,7 @@ TEST_CASE("Internal forces: the fast kernel equals the printed formulas, intact 
                 material.calibration = calibration;
                 material.surface_correction = correction;
                 const auto fast = make_model(shape, material);
-                const auto printed = make_model(shape, material, Kernel::reference);
+                const auto printed = make_model(shape, material, KernelChoice{Kernel::reference});
                 const std::vector<std::uint8_t> broken = make_broken(count_bonds(fast));
                 for (const std::span<const std::uint8_t> alive :
                      {std::span<const std::uint8_t>(), {broken}}) {

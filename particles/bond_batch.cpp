@@ -1,0 +1,157 @@
+#include "particles/bond_batch.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace quern {
+
+#if defined(QUERN_BATCH_X86)
+namespace batch_avx512 {
+extern const BatchLoops loops;
+}
+namespace batch_avx2 {
+extern const BatchLoops loops;
+}
+#endif
+namespace batch_plain {
+extern const BatchLoops loops;
+}
+
+namespace {
+
+struct alignas(64) Row {
+    double lane[batch_lanes];
+};
+
+/// Arrays of one thread, grown to the largest shape it has met and then kept.
+struct Scratch {
+    std::vector<Row> x, v, f, dilatation;
+    std::vector<int> broken_bond;
+    std::vector<std::uint8_t> broken_lanes;
+
+    template <class T>
+    static T* at_least(std::vector<T>& a, std::size_t size) {
+        if (a.size() < size) a.resize(size);
+        return a.data();
+    }
+};
+
+/// rows [n * Dim] = (source - its first entry, if `from_first`) over the scale of each lane. Lanes without a
+/// grain repeat the first.
+template <int Dim>
+void to_rows(const GrainBatch<Dim>& batch, std::span<const Vec<Dim>> GrainView<Dim>::*member, bool from_first,
+             Row* rows) {
+    for (int lane = 0; lane < batch_lanes; ++lane) {
+        const GrainView<Dim>& grain = batch.grain[lane < batch.size ? lane : 0];
+        const std::span<const Vec<Dim>> source = grain.*member;
+        // From the first node: differences of nearby numbers are exact, so a grain far from the origin loses
+        // no digits in the division by its scale.
+        const Vec<Dim> base = from_first ? source[0] : Vec<Dim>(Vec<Dim>::Zero());
+        const double inverse = 1.0 / grain.scale;
+        for (std::size_t i = 0; i < source.size(); ++i)
+            for (int d = 0; d < Dim; ++d) rows[Dim * i + d].lane[lane] = (source[i][d] - base[d]) * inverse;
+    }
+}
+
+}  // namespace
+
+bool has_instructions(Instructions set) {
+#if defined(QUERN_BATCH_X86)
+    if (set == Instructions::avx512)
+        return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+               __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw");
+    if (set == Instructions::avx2) return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    return true;
+#else
+    return set == Instructions::best || set == Instructions::plain;
+#endif
+}
+
+const BatchLoops& batch_loops(Instructions set) {
+#if defined(QUERN_BATCH_X86)
+    if (set == Instructions::best)
+        set = has_instructions(Instructions::avx512)
+                  ? Instructions::avx512
+                  : (has_instructions(Instructions::avx2) ? Instructions::avx2 : Instructions::plain);
+    if (set == Instructions::avx512 && has_instructions(set)) return batch_avx512::loops;
+    if (set == Instructions::avx2 && has_instructions(set)) return batch_avx2::loops;
+#endif
+    if (!has_instructions(set))
+        throw std::logic_error("batch_loops: an instruction set that this machine lacks");
+    return batch_plain::loops;
+}
+
+template <int Dim>
+BondBatch<Dim>::BondBatch(const Bonds<Dim>& bonds, const BondStiffness& stiffness, Instructions set)
+    : loops_(&batch_loops(set)), first_(bonds.first), partner_(bonds.partner), node_(stiffness.node) {
+    for (int i = 0; i < bonds.n_nodes(); ++i)
+        for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b) {
+            const double k = bonds.weight[b] * bonds.volume[i] * bonds.volume[bonds.partner[b]];
+            const double xi = bonds.length[b], c = stiffness.bond[b];
+            bond_.push_back({xi, k * xi, c, c * xi});
+        }
+}
+
+template <int Dim>
+template <bool rate>
+BrokenBonds BondBatch<Dim>::add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
+                                       double critical_stretch, double factor) const {
+    thread_local Scratch scratch;
+    const std::size_t n = first_.size() - 1;
+    Row* const x = Scratch::at_least(scratch.x, n * Dim);
+    Row* const f = Scratch::at_least(scratch.f, n * Dim);
+    Row* const v = rate ? Scratch::at_least(scratch.v, n * Dim) : nullptr;
+    Row* const dilatation = Scratch::at_least(scratch.dilatation, n);
+    to_rows<Dim>(batch, &GrainView<Dim>::x, true, x);
+    if constexpr (rate) to_rows<Dim>(batch, &GrainView<Dim>::v, false, v);
+
+    const BatchTopology topology{static_cast<int>(n), first_.data(), partner_.data(), bond_.data(),
+                                 node_.empty() ? nullptr : node_.data()};
+    BatchState state{};
+    state.x = x->lane;
+    state.v = rate ? v->lane : nullptr;
+    state.f = f->lane;
+    state.dilatation = dilatation->lane;
+    state.alive = alive.empty() ? nullptr : alive.data();
+    Row limit;
+    if (!rate && state.alive != nullptr && std::isfinite(critical_stretch)) {
+        const double longest = (1.0 + critical_stretch) * (1.0 + critical_stretch);
+        for (int lane = 0; lane < batch_lanes; ++lane)  // an empty lane owns no bits that could break
+            limit.lane[lane] = lane < batch.size ? longest : std::numeric_limits<double>::infinity();
+        state.limit = limit.lane;
+        const std::size_t most = 4 * bond_.size();  // the narrowest set goes through the bonds four times
+        state.broken_bond = Scratch::at_least(scratch.broken_bond, most);
+        state.broken_lanes = Scratch::at_least(scratch.broken_lanes, most);
+    }
+    if constexpr (rate)
+        (Dim == 2 ? loops_->viscous_2d : loops_->viscous_3d)(topology, state);
+    else
+        (Dim == 2 ? loops_->elastic_2d : loops_->elastic_3d)(topology, state);
+
+    for (int lane = 0; lane < batch.size; ++lane) {
+        const double back = factor * std::pow(batch.grain[lane].scale, Dim - 1);
+        Vec<Dim>* const out = batch.f[lane];
+        for (std::size_t i = 0; i < n; ++i)
+            for (int d = 0; d < Dim; ++d) out[i][d] += back * f[Dim * i + d].lane[lane];
+    }
+    const std::size_t n_broken = static_cast<std::size_t>(state.n_broken);
+    return {{state.broken_bond, n_broken}, {state.broken_lanes, n_broken}};
+}
+
+template <int Dim>
+BrokenBonds BondBatch<Dim>::add_elastic_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
+                                               double critical_stretch) const {
+    return add_forces<false>(batch, alive, critical_stretch, 1.0);
+}
+
+template <int Dim>
+void BondBatch<Dim>::add_viscous_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
+                                        double time) const {
+    add_forces<true>(batch, alive, std::numeric_limits<double>::infinity(), time);
+}
+
+template class BondBatch<2>;
+template class BondBatch<3>;
+
+}  // namespace quern
