@@ -205,7 +205,8 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
         "assert s[\"wall_seconds\"] is None and s[\"energy\"][\"residual\"] is None; "
         "assert s[\"time_step\"] == 1e-5 and s[\"stages\"][\"contact\"] == 1e22; "
         "assert s[\"warnings\"] == [{\"text\": \"grain 3 left the domain (step 7)\", \"count\": 2}]; "
-        "assert set(s) == set(\"version title outcome dimension threads instructions deck_hash state_hash steps "
+        "assert set(s) == set(\"version title outcome dimension threads instructions deck_hash state_hash "
+        "steps "
         "n_particles n_bonds n_grains simulated_time time_step stable_step wall_seconds "
         "ns_per_particle_step peak_memory_bytes stages energy momentum_error warnings\".split())",
         scratch.path("run/summary.json")));
