@@ -40,9 +40,38 @@ bool lower_first(const Vec<Dim>& a, const Vec<Dim>& b) {
 
 template <int Dim>
 void ContactNodes<Dim>::find(const ContactScene<Dim>& scene) {
+    searched_ = !(options_.skin > 0.0) || moved(scene);
+    if (searched_) search(scene);
+    parallel::for_each(scene.grains.size(), [&](std::size_t g) { fill_slots(scene, static_cast<int>(g)); });
+    index_nodes();
+}
+
+template <int Dim>
+bool ContactNodes<Dim>::moved(const ContactScene<Dim>& scene) const {
+    if (x_searched_.size() != scene.x.size() || wall_searched_.size() != scene.walls.size()) return true;
+    const double skin = options_.skin * grid_.h();
+    for (std::size_t w = 0; w < scene.walls.size(); ++w)
+        if (std::abs(scene.walls[w].normal.dot(scene.walls[w].point - wall_searched_[w])) > skin) return true;
+    const int n_moved = parallel::sum(
+        scene.grains.size(), 0,
+        [&](std::size_t g) {
+            const Grain<Dim>& grain = scene.grains[g];
+            for (const SurfacePoint<Dim>& point : grain.shape->surface) {
+                const int p = grain.first + point.node;
+                if ((scene.x[p] - x_searched_[p]).squaredNorm() > skin * skin) return 1;
+            }
+            return 0;
+        },
+        32);
+    return n_moved > 0;
+}
+
+template <int Dim>
+void ContactNodes<Dim>::search(const ContactScene<Dim>& scene) {
     const std::size_t n_grains = scene.grains.size();
     windows_.resize(n_grains);
     touched_.resize(n_grains);
+    candidates_.resize(n_grains);
     support_.resize(n_grains);
     n_selected_.resize(n_grains);
     scratch_.resize(static_cast<std::size_t>(parallel::n_threads()));
@@ -50,10 +79,49 @@ void ContactNodes<Dim>::find(const ContactScene<Dim>& scene) {
     select(scene);
     number_nodes();
     parallel::for_each(n_grains, [&](std::size_t g) {
-        fill_slots(scene, static_cast<int>(g), scratch_[static_cast<std::size_t>(parallel::thread_id())]);
+        list_candidates(scene, static_cast<int>(g),
+                        scratch_[static_cast<std::size_t>(parallel::thread_id())]);
     });
+    if (options_.skin > 0.0) x_searched_.assign(scene.x.begin(), scene.x.end());
+    wall_searched_.clear();
+    for (const Wall<Dim>& wall : scene.walls) wall_searched_.push_back(wall.point);
+}
+
+template <int Dim>
+void ContactNodes<Dim>::keep_only(const std::vector<std::uint8_t>& wanted) {
+    std::vector<int>& number = fill_;
+    number.assign(static_cast<std::size_t>(n_nodes_), -1);
+    n_nodes_ = 0;
+    for (std::size_t a = 0; a < number.size(); ++a)
+        if (wanted[a]) number[a] = n_nodes_++;
+    std::size_t n_kept = 0;
+    for (std::size_t g = 0; g + 1 < grain_slots_.size(); ++g) {
+        const int first = grain_slots_[g];
+        grain_slots_[g] = static_cast<int>(n_kept);
+        for (int s = first; s < grain_slots_[g + 1]; ++s)
+            if (number[slots_[s].node] >= 0) {
+                slots_[n_kept] = slots_[s];
+                slots_[n_kept].node = number[slots_[s].node];
+                ++n_kept;
+            }
+    }
+    grain_slots_.back() = static_cast<int>(n_kept);
+    slots_.resize(n_kept);
+    index_nodes();
+}
+
+/// Slots of every node, ordered by where their mass is.
+template <int Dim>
+void ContactNodes<Dim>::index_nodes() {
+    node_begin_.assign(static_cast<std::size_t>(n_nodes_) + 1, 0);
+    for (const Slot<Dim>& slot : slots_) ++node_begin_[slot.node + 1];
+    std::partial_sum(node_begin_.begin(), node_begin_.end(), node_begin_.begin());
+    node_slots_.resize(slots_.size());
+    fill_.assign(node_begin_.begin(), node_begin_.end());
+    for (std::size_t s = 0; s < slots_.size(); ++s)
+        node_slots_[fill_[slots_[s].node]++] = static_cast<int>(s);
     parallel::for_each(
-        static_cast<std::size_t>(n_nodes()),
+        static_cast<std::size_t>(n_nodes_),
         [&](std::size_t a) {
             std::sort(node_slots_.begin() + node_begin_[a], node_slots_.begin() + node_begin_[a + 1],
                       [&](int i, int j) { return lower_first<Dim>(slots_[i].xb, slots_[j].xb); });
@@ -72,13 +140,25 @@ void ContactNodes<Dim>::mark_touched(const ContactScene<Dim>& scene) {
             lo = lo.cwiseMin(cell);
             hi = hi.cwiseMax(cell);
         }
-        Window& window = windows_[g];  // one more layer all around for the quadratic stencil
-        window.lo = lo - IntVec<Dim>::Ones();
-        window.size = hi - lo + IntVec<Dim>::Constant(4);
+        Window& window = windows_[g];  // two more layers all around for the quadratic stencil and the skin
+        window.lo = lo - IntVec<Dim>::Constant(2);
+        window.size = hi - lo + IntVec<Dim>::Constant(6);
         scratch.window.assign(static_cast<std::size_t>(window.n()), 0);
+        const double skin = options_.skin;
         auto mark = [&](int p) {
-            const LinearStencil<Dim> stencil(grid_.in_cells(scene.x[p]));
-            for (int k = 0; k < stencil.size; ++k) scratch.window[window.local(stencil.node(k))] = 1;
+            const Vec<Dim> in_cells = grid_.in_cells(scene.x[p]);
+            const IntVec<Dim> cell = CartesianGrid<Dim>::cell(in_cells);
+            IntVec<Dim> first, count;
+            for (int a = 0; a < Dim; ++a) {
+                const double f = in_cells[a] - cell[a];
+                first[a] = cell[a] - (f < skin ? 1 : 0);
+                count[a] = cell[a] + 2 + (f > 1.0 - skin ? 1 : 0) - first[a];
+            }
+            for (int k = 0; k < count.prod(); ++k) {
+                IntVec<Dim> node = first;
+                for (int a = 0, rest = k; a < Dim; rest /= count[a], ++a) node[a] += rest % count[a];
+                scratch.window[window.local(node)] = 1;
+            }
         };
         if (options_.all_particles || options_.all_nodes)
             for (int p = grain.first; p < grain.first + grain.count; ++p) mark(p);
@@ -95,8 +175,8 @@ bool ContactNodes<Dim>::near_wall(const ContactScene<Dim>& scene, const IntVec<D
     const Vec<Dim> x = grid_.node_position(node);
     return std::any_of(scene.walls.begin(), scene.walls.end(), [&](const Wall<Dim>& wall) {
         const double distance = wall.distance(x);
-        return options_.all_particles ? distance <= options_.wall_reach * grid_.h()
-                                      : std::abs(distance) <= options_.wall_reach * grid_.h();
+        const double reach = (options_.wall_reach + options_.skin) * grid_.h();
+        return options_.all_particles ? distance <= reach : std::abs(distance) <= reach;
     });
 }
 
@@ -153,27 +233,17 @@ void ContactNodes<Dim>::number_nodes() {
     grain_slots_.assign(n_grains + 1, 0);
     std::partial_sum(n_selected_.begin(), n_selected_.end(), grain_slots_.begin() + 1);
     slots_.resize(static_cast<std::size_t>(grain_slots_.back()));
-    int n_contact_nodes = 0;
-    node_begin_.assign(1, 0);
+    n_nodes_ = 0;
     for (std::size_t g = 0; g < n_grains; ++g) {
         for (int k = 0; k < n_selected_[g]; ++k) {
             Slot<Dim>& slot = slots_[grain_slots_[g] + k];
             slot.grain = static_cast<int>(g);
             slot.index = windows_[g].node(touched_[g][k]);
             std::int32_t& mark = marks_[wrapped(slot.index)];
-            if (mark >= 0) {
-                mark = -1 - n_contact_nodes++;
-                node_begin_.push_back(0);
-            }
+            if (mark >= 0) mark = -1 - n_nodes_++;
             slot.node = -1 - mark;
-            ++node_begin_[slot.node + 1];
         }
     }
-    std::partial_sum(node_begin_.begin(), node_begin_.end(), node_begin_.begin());
-    node_slots_.resize(slots_.size());
-    std::vector<int>& fill = scratch_[0].count;
-    fill.assign(node_begin_.begin(), node_begin_.end());
-    for (std::size_t s = 0; s < slots_.size(); ++s) node_slots_[fill[slots_[s].node]++] = static_cast<int>(s);
     parallel::for_each(n_grains, [&](std::size_t g) {
         for (const int i : touched_[g])
             std::atomic_ref<std::int32_t>(marks_[wrapped(windows_[g].node(i))])
@@ -181,105 +251,113 @@ void ContactNodes<Dim>::number_nodes() {
     });
 }
 
-/// Particles in cells near a slot, in their order.
+/// Particles that have a slot in reach of their quadratic functions, or will before the next search.
 template <int Dim>
-void ContactNodes<Dim>::find_near_particles(const ContactScene<Dim>& scene, const Grain<Dim>& grain,
-                                            const Window& window, Scratch& scratch) const {
-    const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
-    std::size_t next_surface = 0;
-    scratch.near.clear();
-    for (int i = 0; i < grain.count; ++i) {
-        const bool on_surface = next_surface < surface.size() && surface[next_surface].node == i;
-        const int surface_index = on_surface ? static_cast<int>(next_surface++) : -1;
-        const Vec<Dim> in_cells = grid_.in_cells(scene.x[grain.first + i]);
-        if (scratch.near_cell[window.local(CartesianGrid<Dim>::cell(in_cells))])
-            scratch.near.push_back({grain.first + i, surface_index, in_cells});
-    }
-}
-
-template <int Dim>
-void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g, Scratch& scratch) {
+void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, Scratch& scratch) {
     const auto [first, last] = slots_of_grain(g);
     if (first == last) return;
     const Grain<Dim>& grain = scene.grains[g];
     const Window& window = windows_[g];
-    const double h = grid_.h();
     scratch.window.assign(static_cast<std::size_t>(window.n()), -1);
     scratch.near_cell.assign(static_cast<std::size_t>(window.n()), 0);
+    constexpr int reach = 2, side = 2 * reach;  // cells of particles near a node: two to each side of it
     for (int s = first; s < last; ++s) {
         Slot<Dim>& slot = slots_[s];
         scratch.window[window.local(slot.index)] = s - first;
-        slot.n_support = 0;
-        slot.volume = 0.0;
-        slot.gradient.setZero();
-        // Cells whose quadratic stencils can reach the node: up to two below it, one above.
-        for (int k = 0; k < power(4, Dim); ++k) {
+        slot.n_candidates = 0;
+        for (int k = 0; k < power(side, Dim); ++k) {
             IntVec<Dim> cell;
             bool inside = true;
-            for (int a = 0, rest = k; a < Dim; ++a, rest /= 4) {
-                cell[a] = slot.index[a] - 2 + rest % 4;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= side) {
+                cell[a] = slot.index[a] - reach + rest % side;
                 inside = inside && cell[a] >= window.lo[a] && cell[a] < window.lo[a] + window.size[a];
             }
             if (inside) scratch.near_cell[window.local(cell)] = 1;
         }
     }
-    find_near_particles(scene, grain, window, scratch);
-    for (const NearParticle<Dim>& near : scratch.near) {
-        const QuadraticStencil<Dim> stencil(near.in_cells);
-        const IntVec<Dim> cell = CartesianGrid<Dim>::cell(near.in_cells);
-        const double volume = scene.volume[near.particle];
-        for (int k = 0; k < stencil.size; ++k) {
-            const IntVec<Dim> node = stencil.node(k);
-            const int local = scratch.window[window.local(node)];
-            if (local < 0) continue;
-            Slot<Dim>& slot = slots_[first + local];
-            slot.gradient -= volume / h * stencil.gradient(k);  // by the node: minus by the point
-            const IntVec<Dim> offset = node - cell;
-            if (offset.minCoeff() >= 0 && offset.maxCoeff() <= 1) ++slot.n_support;
+    scratch.near.clear();
+    const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
+    const double furthest = 1.5 + options_.skin;
+    std::size_t next_surface = 0;
+    for (int i = 0; i < grain.count; ++i) {
+        const bool on_surface = next_surface < surface.size() && surface[next_surface].node == i;
+        const int surface_index = on_surface ? static_cast<int>(next_surface++) : -1;
+        const Vec<Dim> in_cells = grid_.in_cells(scene.x[grain.first + i]);
+        const IntVec<Dim> cell = CartesianGrid<Dim>::cell(in_cells);
+        if (!scratch.near_cell[window.local(cell)]) continue;
+        for (int k = 0; k < power(side, Dim); ++k) {
+            IntVec<Dim> node;
+            bool near = true;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= side) {
+                node[a] = cell[a] - reach + 1 + rest % side;
+                near = near && std::abs(in_cells[a] - node[a]) <= furthest && node[a] >= window.lo[a] &&
+                       node[a] < window.lo[a] + window.size[a];
+            }
+            if (!near) continue;
+            const int slot = scratch.window[window.local(node)];
+            if (slot < 0) continue;
+            scratch.near.push_back({slot, {grain.first + i, surface_index}});
+            ++slots_[first + slot].n_candidates;
         }
     }
-    scratch.count.resize(static_cast<std::size_t>(last - first));
-    int total = 0;
+    std::size_t total = 0;
     for (int s = first; s < last; ++s) {
-        scratch.count[s - first] = total;
-        total += slots_[s].n_support;
+        slots_[s].candidate = total;
+        total += static_cast<std::size_t>(slots_[s].n_candidates);
+        slots_[s].n_candidates = 0;
     }
-    std::vector<Support<Dim>>& support = support_[g];
-    support.resize(static_cast<std::size_t>(total));
-    for (const NearParticle<Dim>& near : scratch.near) {
-        const LinearStencil<Dim> stencil(near.in_cells);
-        for (int k = 0; k < stencil.size; ++k) {
-            const int local = scratch.window[window.local(stencil.node(k))];
-            if (local < 0) continue;
-            Slot<Dim>& slot = slots_[first + local];
-            const double N = stencil.N[k];
-            const double w =
-                options_.nodal ? N : (near.surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
-            support[scratch.count[local]++] = {near.particle, near.surface, N, w,
-                                               scene.x[near.particle] - grid_.node_position(slot.index)};
-            slot.volume += N * scene.volume[near.particle];
-        }
+    candidates_[g].resize(total);
+    support_[g].resize(total);
+    for (const auto& [slot, candidate] : scratch.near) {
+        Slot<Dim>& to = slots_[first + slot];
+        candidates_[g][to.candidate + static_cast<std::size_t>(to.n_candidates++)] = candidate;
     }
-    int begin = 0;
+}
+
+template <int Dim>
+void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g) {
+    const double h = grid_.h();
+    const auto [first, last] = slots_of_grain(g);
+    Support<Dim>* support = support_[g].data();
     for (int s = first; s < last; ++s) {
         Slot<Dim>& slot = slots_[s];
-        slot.support = support.data() + begin;
-        begin += slot.n_support;
-        slot.m = 0.0;
-        slot.xb.setZero();
-        for (int k = 0; k < slot.n_support; ++k) {
-            const Support<Dim>& e = slot.support[k];
-            slot.m += scene.mass[e.particle] * e.w;
-            slot.xb += scene.mass[e.particle] * e.w * e.d;
+        const Candidate* const candidate = candidates_[g].data() + slot.candidate;
+        const Vec<Dim> x_node = grid_.node_position(slot.index);
+        const Vec<Dim> index = slot.index.template cast<double>();
+        int n = 0;
+        double volume = 0.0, m = 0.0;
+        Vec<Dim> gradient = Vec<Dim>::Zero(), xb = Vec<Dim>::Zero();
+        for (int k = 0; k < slot.n_candidates; ++k) {
+            const auto [p, surface] = candidate[k];
+            const Vec<Dim> t = grid_.in_cells(scene.x[p]) - index;
+            if (t.cwiseAbs().maxCoeff() >= 1.5) continue;
+            const double V = scene.volume[p];
+            gradient -= V / h * quadratic_gradient<Dim>(t);  // by the node: minus by the point
+            if (t.minCoeff() < -1.0 || t.maxCoeff() >= 1.0) continue;
+            double N = 1.0;
+            for (int a = 0; a < Dim; ++a) N *= 1.0 - std::abs(t[a]);
+            const double w = options_.nodal ? N : (surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
+            const Vec<Dim> d = scene.x[p] - x_node;
+            const double mw = scene.mass[p] * w;
+            support[n++] = {p, surface, N, w, mw, d};
+            volume += N * V;
+            m += mw;
+            xb += mw * d;
         }
-        if (slot.m > 0.0) slot.xb /= slot.m;
+        if (m > 0.0) xb /= m;
         Mat<Dim> second = Mat<Dim>::Zero();
-        for (int k = 0; k < slot.n_support; ++k) {
-            const Support<Dim>& e = slot.support[k];
-            const Vec<Dim> r = e.d - slot.xb;
-            second += scene.mass[e.particle] * e.w * r * r.transpose();
+        for (int k = 0; k < n; ++k) {
+            const Vec<Dim> r = support[k].d - xb;
+            second += support[k].mw * r * r.transpose();
         }
-        slot.rotates = invert_inertia(second, slot.m, h, slot.Y);
+        slot.support = support;
+        slot.n_support = n;
+        slot.volume = volume;
+        slot.gradient = gradient;
+        slot.m = m;
+        slot.xb = xb;
+        slot.rotates = invert_inertia(second, m, h, slot.Y);
+        support += n;
     }
 }
 

@@ -14,6 +14,9 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
     nodes.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
     nodes.interior_weight = options.interior_weight;
+    // Only where an impulse needs surfaces that meet can nodes whose surfaces are apart be left out.
+    const bool meets = options.rule == GridRule::pair && options.gap_test && !nodes.all_nodes;
+    nodes.skin = meets ? options.skin : 0.0;
     return nodes;
 }
 
@@ -43,8 +46,7 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
 }
 
 template <int Dim>
-void GridContact<Dim>::to_slots(const ContactScene<Dim>& scene, std::span<const Vec<Dim>> v,
-                                std::vector<Vec<Dim>>& nodal) const {
+void GridContact<Dim>::to_slots(std::span<const Vec<Dim>> v, std::vector<Vec<Dim>>& nodal) const {
     nodal.resize(nodes_.slots().size());
     parallel::for_each(
         nodal.size(),
@@ -53,7 +55,7 @@ void GridContact<Dim>::to_slots(const ContactScene<Dim>& scene, std::span<const 
             Vec<Dim> momentum = Vec<Dim>::Zero();
             for (int k = 0; k < slot.n_support; ++k) {
                 const Support<Dim>& e = slot.support[k];
-                momentum += scene.mass[e.particle] * e.w * v[e.particle];
+                momentum += e.mw * v[e.particle];
             }
             nodal[s] = slot.m > 0.0 ? Vec<Dim>(momentum / slot.m) : Vec<Dim>(Vec<Dim>::Zero());
         },
@@ -62,8 +64,8 @@ void GridContact<Dim>::to_slots(const ContactScene<Dim>& scene, std::span<const 
 
 template <int Dim>
 void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {
-    to_slots(scene, trial.v_before, nodal_before_);
-    to_slots(scene, trial.v, nodal_trial_);
+    to_slots(trial.v_before, nodal_before_);
+    to_slots(trial.v, nodal_trial_);
     nodal_ = nodal_trial_;
     if (options_.rule == GridRule::pair)
         pair_.solve_nodal(nodes_, scene, trial.dt, nodal_, nodal_before_, report_);

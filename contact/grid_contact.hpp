@@ -27,8 +27,7 @@ class GridContact {
     bool moves_with_grid() const { return options_.coupling == GridCoupling::flip; }
 
   private:
-    void to_slots(const ContactScene<Dim>& scene, std::span<const Vec<Dim>> v,
-                  std::vector<Vec<Dim>>& nodal) const;
+    void to_slots(std::span<const Vec<Dim>> v, std::vector<Vec<Dim>>& nodal) const;
     void solve_on_nodes(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
 
     GridContactOptions options_;

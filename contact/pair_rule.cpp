@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <limits>
 
 #include "contact/slot_field.hpp"
 #include "grid/parallel.hpp"
@@ -11,6 +12,9 @@ namespace quern {
 namespace {
 
 constexpr std::size_t serial_below = 64;  ///< contact nodes of one colour
+/// No contact makes a grain approach another this many times faster than anything moved before.
+constexpr double faster_than_fastest = 10.0;
+constexpr double wall_in_sight = 2.0;  ///< a wall further from a node has no tile there [h]
 
 /// Largest eigenvalue of T^T W T, the inverse mass in the tangent plane.
 double tangential(const Mat<2>& W, const Eigen::Matrix<double, 2, 1>& T) {
@@ -33,6 +37,23 @@ struct Work {
         return *this;
     }
 };
+
+/// Of particles and walls [m/s].
+template <int Dim>
+double largest_speed(const ContactScene<Dim>& scene, std::span<Vec<Dim>> v) {
+    struct Largest {
+        double square = 0.0;
+        Largest& operator+=(const Largest& other) {
+            square = std::max(square, other.square);
+            return *this;
+        }
+    };
+    const double square =
+        parallel::sum(v.size(), Largest{}, [&](std::size_t p) { return Largest{v[p].squaredNorm()}; }).square;
+    double wall = 0.0;
+    for (const Wall<Dim>& w : scene.walls) wall = std::max(wall, w.velocity.norm());
+    return std::sqrt(square) + wall;
+}
 
 }  // namespace
 
@@ -61,6 +82,8 @@ void PairRule<Dim>::add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
         row.mu = (*scene.friction)(grain_a.material, grain_b.material);
     }
     if (!tile) return;
+    row.gap_speed = options_.gap_test ? std::max(tile->gap, 0.0) / dt : 0.0;
+    if (row.gap_speed > reachable_speed_) return;  // the row would stay without impulse
     row.n = tile->normal;
     row.point = tile->point;
     if (options_.coupling == GridCoupling::impulse) {
@@ -70,10 +93,10 @@ void PairRule<Dim>::add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
         else if (b >= 0 && !nodes.slots()[b].rotates)
             row.point = nodes.slots()[b].xb;
         row.r_a = row.point - A.xb;
-        row.W = inverse_mass<Dim>(A, row.r_a, scene.mass, options_.exact_mass);
+        row.W = inverse_mass<Dim>(A, row.r_a, options_.exact_mass);
         if (b >= 0) {
             row.r_b = row.point - nodes.slots()[b].xb;
-            row.W += inverse_mass<Dim>(nodes.slots()[b], row.r_b, scene.mass, options_.exact_mass);
+            row.W += inverse_mass<Dim>(nodes.slots()[b], row.r_b, options_.exact_mass);
         }
     } else {
         row.r_a.setZero();
@@ -82,8 +105,28 @@ void PairRule<Dim>::add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
     }
     row.W_n = row.n.dot(row.W * row.n);
     row.W_t = tangential(row.W, tangents<Dim>(row.n));
-    row.gap_speed = options_.gap_test ? std::max(tile->gap, 0.0) / dt : 0.0;
     rows.push_back(row);
+}
+
+template <int Dim>
+bool PairRule<Dim>::may_touch(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                              int node) const {
+    const double h = nodes.grid().h(), skin = nodes.skin();
+    const std::span<const int> slots = nodes.slots_of(node);
+    const auto side = [&](int s) {
+        const Slot<Dim>& slot = nodes.slots()[s];
+        return TileSide<Dim>{&slot, &scene.grains[slot.grain], &rotation_[slot.grain]};
+    };
+    for (std::size_t k = 0; k < slots.size(); ++k) {
+        for (std::size_t l = k + 1; l < slots.size(); ++l)
+            if (!stay_apart(side(slots[k]), side(slots[l]), h, skin, options_)) return true;
+        const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
+        for (const Wall<Dim>& wall : scene.walls)
+            if (std::abs(wall.distance(x)) <= wall_in_sight * h &&
+                !stay_apart(side(slots[k]), wall, wall.distance(x), h, skin, options_))
+                return true;
+    }
+    return false;
 }
 
 template <int Dim>
@@ -95,6 +138,12 @@ void PairRule<Dim>::make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>&
             nodes.slots()[s].rotates = false;
         if (first < last) rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
     });
+    if (nodes.searched() && nodes.skin() > 0.0) {
+        wanted_.resize(static_cast<std::size_t>(nodes.n_nodes()));
+        parallel::for_each(wanted_.size(),
+                           [&](std::size_t i) { wanted_[i] = may_touch(nodes, scene, static_cast<int>(i)); });
+        nodes.keep_only(wanted_);
+    }
     const std::size_t n_nodes = static_cast<std::size_t>(nodes.n_nodes());
     if (rows_.size() < n_nodes) rows_.resize(n_nodes);
     parallel::for_each(
@@ -106,8 +155,10 @@ void PairRule<Dim>::make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>&
             for (std::size_t k = 0; k < slots.size(); ++k) {
                 for (std::size_t l = k + 1; l < slots.size(); ++l)
                     add_row(nodes, scene, dt, slots[k], slots[l], -1, rows);
+                const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
                 for (std::size_t w = 0; w < scene.walls.size(); ++w)
-                    add_row(nodes, scene, dt, slots[k], -1, static_cast<int>(w), rows);
+                    if (std::abs(scene.walls[w].distance(x)) <= wall_in_sight * nodes.grid().h())
+                        add_row(nodes, scene, dt, slots[k], -1, static_cast<int>(w), rows);
             }
         },
         serial_below);
@@ -180,6 +231,7 @@ void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const Before& befor
     const auto work = parallel::sum(n_nodes, Work<Dim>{}, [&](std::size_t i) {
         Work<Dim> sum;
         for (const PairRow<Dim>& row : rows_[i]) {
+            if (row.J_n == 0.0) continue;
             const Slot<Dim>& A = nodes.slots()[row.a];
             Vec<Dim> u = 0.5 * (before.velocity(A, row.r_a) + after.velocity(A, row.r_a));
             if (row.b >= 0) {
@@ -199,10 +251,11 @@ void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const Before& befor
     report.wall_work += work.wall;
     for (std::size_t i = 0; i < n_nodes; ++i)
         for (const PairRow<Dim>& row : rows_[i]) {
+            ++report.n_contacts;
+            if (row.J_n == 0.0) continue;
             const Vec<Dim> J = row.J_n * row.n + row.J_t;
             const Slot<Dim>& A = nodes.slots()[row.a];
             report.grain_impulse[A.grain] -= J;
-            ++report.n_contacts;
             if (row.b >= 0) {
                 report.grain_impulse[nodes.slots()[row.b].grain] += J;
             } else {
@@ -216,16 +269,18 @@ void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const Before& befor
 template <int Dim>
 void PairRule<Dim>::solve_particles(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                                     const ContactTrial<Dim>& trial, ContactReport<Dim>& report) {
+    reachable_speed_ = faster_than_fastest * largest_speed(scene, trial.v);
     make_rows(nodes, scene, trial.dt);
-    ParticleField<Dim> field{trial.v, scene.mass};
+    ParticleField<Dim> field{trial.v};
     sweep(nodes, field, report);
-    add_work(nodes, ParticleField<Dim, const Vec<Dim>>{trial.v_before, scene.mass}, field, report);
+    add_work(nodes, ParticleField<Dim, const Vec<Dim>>{trial.v_before}, field, report);
 }
 
 template <int Dim>
 void PairRule<Dim>::solve_nodal(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
                                 std::vector<Vec<Dim>>& nodal, const std::vector<Vec<Dim>>& nodal_before,
                                 ContactReport<Dim>& report) {
+    reachable_speed_ = std::numeric_limits<double>::infinity();
     make_rows(nodes, scene, dt);
     NodalField<Dim> field{nodal, nodes.slots().data()};
     sweep(nodes, field, report);

@@ -59,6 +59,7 @@ class PairRule {
 
   private:
     void make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt);
+    bool may_touch(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, int node) const;
     void add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b, int wall,
                  std::vector<PairRow<Dim>>& rows) const;
     template <class Field>
@@ -68,10 +69,12 @@ class PairRule {
                   ContactReport<Dim>& report) const;
 
     GridContactOptions options_;
+    double reachable_speed_ = 0.0;                 ///< of one slot against another in this step [m/s]
     std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of grains with slots
     std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_nodes]
     std::vector<std::vector<int>> colours_;        ///< nodes with rows, by colour
     std::vector<double> change_, total_;           ///< [n_nodes] of one sweep
+    std::vector<std::uint8_t> wanted_;             ///< [n_nodes] of a search
 };
 
 }  // namespace quern

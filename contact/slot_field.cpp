@@ -3,7 +3,7 @@
 namespace quern {
 
 template <int Dim>
-Mat<Dim> inverse_mass(const Slot<Dim>& slot, const Vec<Dim>& r, std::span<const double> mass, bool exact) {
+Mat<Dim> inverse_mass(const Slot<Dim>& slot, const Vec<Dim>& r, bool exact) {
     Eigen::Matrix<double, n_spin<Dim>, Dim> YrJ = Eigen::Matrix<double, n_spin<Dim>, Dim>::Zero();
     if (slot.rotates)
         for (int a = 0; a < Dim; ++a) YrJ.col(a) = slot.Y * moment(r, Vec<Dim>(Vec<Dim>::Unit(a)));
@@ -14,15 +14,15 @@ Mat<Dim> inverse_mass(const Slot<Dim>& slot, const Vec<Dim>& r, std::span<const 
     }
     for (int k = 0; k < slot.n_support; ++k) {
         const Support<Dim>& e = slot.support[k];
-        const Vec<Dim> d = e.d - slot.xb;
         Mat<Dim> B;
-        for (int a = 0; a < Dim; ++a) B.col(a) = Vec<Dim>::Unit(a) / slot.m + cross(Spin<Dim>(YrJ.col(a)), d);
-        W += mass[e.particle] * e.w * e.w * B.transpose() * B;
+        for (int a = 0; a < Dim; ++a)
+            B.col(a) = Vec<Dim>::Unit(a) / slot.m + cross(Spin<Dim>(YrJ.col(a)), Vec<Dim>(e.d - slot.xb));
+        W += e.mw * e.w * B.transpose() * B;
     }
     return W;
 }
 
-template Mat<2> inverse_mass<2>(const Slot<2>&, const Vec<2>&, std::span<const double>, bool);
-template Mat<3> inverse_mass<3>(const Slot<3>&, const Vec<3>&, std::span<const double>, bool);
+template Mat<2> inverse_mass<2>(const Slot<2>&, const Vec<2>&, bool);
+template Mat<3> inverse_mass<3>(const Slot<3>&, const Vec<3>&, bool);
 
 }  // namespace quern

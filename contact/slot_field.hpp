@@ -9,7 +9,6 @@ namespace quern {
 template <int Dim, class Velocity = Vec<Dim>>
 struct ParticleField {
     std::span<Velocity> v;
-    std::span<const double> mass;
 
     /// u = sum m w B^T v: the slot's velocity at lever r.
     Vec<Dim> velocity(const Slot<Dim>& slot, const Vec<Dim>& r) const {
@@ -17,7 +16,7 @@ struct ParticleField {
         Spin<Dim> L = Spin<Dim>::Zero();
         for (int k = 0; k < slot.n_support; ++k) {
             const Support<Dim>& e = slot.support[k];
-            const Vec<Dim> p = mass[e.particle] * e.w * v[e.particle];
+            const Vec<Dim> p = e.mw * v[e.particle];
             P += p;
             L += moment(Vec<Dim>(e.d - slot.xb), p);
         }
@@ -52,6 +51,6 @@ struct NodalField {
 /// Exact inverse mass of a slot at lever r: W = sum m w^2 B^T B [1/kg]. `exact` false: the patch as a rigid
 /// body of its weighted mass.
 template <int Dim>
-Mat<Dim> inverse_mass(const Slot<Dim>& slot, const Vec<Dim>& r, std::span<const double> mass, bool exact);
+Mat<Dim> inverse_mass(const Slot<Dim>& slot, const Vec<Dim>& r, bool exact);
 
 }  // namespace quern

@@ -62,4 +62,13 @@ template <int Dim>
 std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
                                         double h, const GridContactOptions& options);
 
+/// Whether two surfaces near a node, or a surface and a wall, cannot meet there before one of them has moved
+/// by `skin` [h].
+template <int Dim>
+bool stay_apart(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, double skin,
+                const GridContactOptions& options);
+template <int Dim>
+bool stay_apart(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h, double skin,
+                const GridContactOptions& options);
+
 }  // namespace quern

@@ -79,4 +79,23 @@ struct QuadraticStencil {
     }
 };
 
+/// Gradient of the quadratic B-spline of one node with respect to the point, in units 1/h; t: from the node
+/// to the point, |t| <= 3/2 on every axis.
+template <int Dim>
+[[gnu::always_inline]] inline Vec<Dim> quadratic_gradient(const Vec<Dim>& t) {
+    Vec<Dim> B, dB;
+    for (int a = 0; a < Dim; ++a) {
+        const double r = std::abs(t[a]), outer = 1.5 - r;
+        B[a] = r < 0.5 ? 0.75 - r * r : 0.5 * outer * outer;
+        dB[a] = r < 0.5 ? -2.0 * t[a] : (t[a] > 0.0 ? -outer : outer);
+    }
+    Vec<Dim> g;
+    for (int a = 0; a < Dim; ++a) {
+        g[a] = dB[a];
+        for (int b = 0; b < Dim; ++b)
+            if (b != a) g[a] *= B[b];
+    }
+    return g;
+}
+
 }  // namespace quern

@@ -160,6 +160,8 @@ Table<ContactDeck> contact_table() {
               "Sweeps over the contacts, at most");
     t.number("tolerance", &T::tolerance, "", {0.0, 1.0, true, true, false},
              "Sweeps end when impulses change by less than this part");
+    t.number("skin", &T::skin, "", {0.0, 0.25, false, false, false},
+             "Nodes are searched anew when something has moved by this part of a cell; 0: every step");
     t.flag("tile", &T::tile, "Gap at the closest approach of two profiles; false: from mean positions");
     t.flag("curvature", &T::curvature, "Profiles know the curvature of the surface");
     t.flag("rotation", &T::rotation, "Impulses act at one point and turn what they meet");

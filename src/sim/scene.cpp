@@ -54,6 +54,7 @@ GridContactOptions contact_options(const ContactDeck& deck) {
     options.interior_weight = deck.interior_weight;
     options.max_sweeps = deck.max_sweeps;
     options.tolerance = deck.tolerance;
+    options.skin = deck.skin;
     options.tile = deck.tile;
     options.curvature = deck.curvature;
     options.rotation = deck.rotation;

@@ -37,10 +37,10 @@ void check_inverse_mass() {
     double worst = 0.0, rigid = -1.0;
     for_each_slot<Dim>([&](const Slot<Dim>& slot, const World<Dim>& world) {
         std::vector<Vec<Dim>> v(world.particles.x.size());
-        ParticleField<Dim> field{v, world.particles.mass};
+        ParticleField<Dim> field{v};
         for (const Vec<Dim>& r : levers<Dim>(world.grid.h())) {
-            const Mat<Dim> W = inverse_mass<Dim>(slot, r, world.particles.mass, true);
-            const Mat<Dim> lumped = inverse_mass<Dim>(slot, r, world.particles.mass, false);
+            const Mat<Dim> W = inverse_mass<Dim>(slot, r, true);
+            const Mat<Dim> lumped = inverse_mass<Dim>(slot, r, false);
             for (int a = 0; a < Dim; ++a) {
                 std::fill(v.begin(), v.end(), Vec<Dim>::Zero());
                 field.add_impulse(slot, r, Vec<Dim>::Unit(a));
@@ -63,8 +63,8 @@ void check_adjoint() {
         for (std::size_t p = 0; p < v.size(); ++p)
             v[p] += world.particles.x[p].reverse().cwiseProduct(world.particles.x[p]);
         std::vector<Vec<Dim>> dv(v.size(), Vec<Dim>::Zero());
-        const ParticleField<Dim> field{v, world.particles.mass};
-        ParticleField<Dim> change{dv, world.particles.mass};
+        const ParticleField<Dim> field{v};
+        ParticleField<Dim> change{dv};
         for (const Vec<Dim>& r : levers<Dim>(world.grid.h())) {
             const Vec<Dim> J = r.reverse() / world.grid.h();
             std::fill(dv.begin(), dv.end(), Vec<Dim>::Zero());
@@ -100,7 +100,7 @@ void check_rigid_motion() {
         const Vec<Dim> centre = world.grid.node_position(slot.index) + slot.xb;
         std::vector<Vec<Dim>> v;
         for (const Vec<Dim>& x : world.particles.x) v.push_back(V + cross(omega, Vec<Dim>(x - centre)));
-        const ParticleField<Dim> field{v, world.particles.mass};
+        const ParticleField<Dim> field{v};
         for (const Vec<Dim>& r : levers<Dim>(world.grid.h()))
             worst = std::max(worst, (field.velocity(slot, r) - V - cross(omega, r)).norm());
     });
