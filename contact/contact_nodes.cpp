@@ -56,11 +56,10 @@ bool ContactNodes<Dim>::moved(const ContactScene<Dim>& scene) const {
         scene.grains.size(), 0,
         [&](std::size_t g) {
             const Grain<Dim>& grain = scene.grains[g];
-            for (const SurfacePoint<Dim>& point : grain.shape->surface) {
-                const int p = grain.first + point.node;
-                if ((scene.x[p] - x_searched_[p]).squaredNorm() > skin * skin) return 1;
-            }
-            return 0;
+            double furthest = 0.0;
+            for (int p = grain.first; p < grain.first + grain.count; ++p)
+                furthest = std::max(furthest, (scene.x[p] - x_searched_[p]).squaredNorm());
+            return furthest > skin * skin ? 1 : 0;
         },
         32);
     return n_moved > 0;
@@ -140,9 +139,9 @@ void ContactNodes<Dim>::mark_touched(const ContactScene<Dim>& scene) {
             lo = lo.cwiseMin(cell);
             hi = hi.cwiseMax(cell);
         }
-        Window& window = windows_[g];  // two more layers all around for the quadratic stencil and the skin
-        window.lo = lo - IntVec<Dim>::Constant(2);
-        window.size = hi - lo + IntVec<Dim>::Constant(6);
+        Window& window = windows_[g];  // one more layer all around for the skin
+        window.lo = lo - IntVec<Dim>::Ones();
+        window.size = hi - lo + IntVec<Dim>::Constant(4);
         scratch.window.assign(static_cast<std::size_t>(window.n()), 0);
         const double skin = options_.skin;
         auto mark = [&](int p) {

@@ -5,7 +5,7 @@
 // node, their mass and inertia. Memory follows slots: nothing is stored per grain and node.
 //
 // Finding the nodes takes longer than filling their slots, so they are found with a skin to spare and kept
-// until a surface particle or a wall has moved by the skin; and of those found, a contact rule may put aside
+// until a particle or a wall has moved by the skin; and of those found, a contact rule may put aside
 // the ones whose surfaces are further apart than two skins can close (keep_only). Neither changes a result:
 // what a slot holds is computed from the positions of each step, and a node that was put aside has no
 // contact before the next search.
@@ -142,7 +142,7 @@ class ContactNodes {
     std::vector<int> grain_slots_, node_begin_, node_slots_, fill_;
     int n_nodes_ = 0;
     bool searched_ = false;
-    std::vector<Vec<Dim>> x_searched_;     ///< [n] positions of surface particles at the last search
+    std::vector<Vec<Dim>> x_searched_;     ///< [n] positions at the last search
     std::vector<Vec<Dim>> wall_searched_;  ///< [n_walls] points of the walls then
     std::vector<Slot<Dim>> slots_;
     std::vector<Scratch> scratch_;

@@ -94,7 +94,7 @@ TEST_CASE("CartesianGrid: contains just what has nodes all around") {
     CHECK(grid.contains({0.0, -2.0}));
     CHECK_FALSE(grid.contains({0.0, std::nextafter(-2.0, -3.0)}));
     CHECK(grid.contains({0.0, std::nextafter(7.0, 0.0)}));
-    CHECK_FALSE(grid.contains({0.0, 7.0}));  // the quadratic stencil of its cell would end beyond the margin
+    CHECK_FALSE(grid.contains({0.0, 7.0}));  // nodes a skin beyond its cell would lie past the margin
     const double no_number = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(grid.contains({no_number, 1.0}));
     CHECK_FALSE(grid.contains({1.0, no_number}));
