@@ -70,6 +70,7 @@ struct ContactReport {
     std::vector<Spin<Dim>> wall_moment;   ///< [n_walls] moment of the wall impulses about the origin
     std::int64_t n_nodes = 0, n_contacts = 0;
     int sweeps = 0;
+    bool searched = true;  ///< contact nodes were found anew
     bool converged = true;
 };
 

@@ -37,11 +37,12 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     report_.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
     report_.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
     nodes_.find(scene);
-    report_.n_nodes = nodes_.n_nodes();
+    report_.searched = nodes_.searched();
     if (options_.rule == GridRule::pair && options_.coupling == GridCoupling::impulse)
         pair_.solve_particles(nodes_, scene, trial, report_);
     else
         solve_on_nodes(scene, trial);
+    report_.n_nodes = nodes_.n_nodes();
     return report_;
 }
 

@@ -26,13 +26,30 @@ struct Arguments {
     std::vector<std::string> overrides;
     RunOptions run;
     RenderOptions render;
-    bool markdown = false;
+    bool markdown = false, profile = false;
 };
 
 int report(std::string message, int code) {
     std::replace(message.begin(), message.end(), '\n', ' ');
     fmt::print(stderr, "quern: error: {}\n", message);
     return code;
+}
+
+/// Stages of the step: seconds, share of all stages, and ns per particle and step.
+void print_profile(const Summary& summary) {
+    double total = 0.0;
+    for (const auto& [stage, seconds] : summary.stages) total += seconds;
+    const double particle_steps = static_cast<double>(summary.n_particles) *
+                                  static_cast<double>(std::max<std::int64_t>(1, summary.steps));
+    fmt::print("\n{:<16} {:>10} {:>8} {:>22}\n", "stage", "seconds", "share", "ns/particle and step");
+    for (const auto& [stage, seconds] : summary.stages)
+        fmt::print("{:<16} {:10.3f} {:7.1f}% {:22.1f}\n", stage, seconds,
+                   total > 0.0 ? 100.0 * seconds / total : 0.0, 1e9 * seconds / particle_steps);
+    for (const auto& [what, mean] : summary.contact_per_step)
+        fmt::print("contact {:<8} {:10.4g} a step\n", what, mean);
+    fmt::print("memory {:20.3f} kB a particle at its peak, instructions {}\n\n",
+               1e-3 * summary.peak_memory_bytes / static_cast<double>(summary.n_particles),
+               summary.instructions);
 }
 
 int run(const Arguments& arguments) {
@@ -58,6 +75,7 @@ int run(const Arguments& arguments) {
                summary.momentum_error_angular);
     for (const auto& [text, count] : summary.warnings)
         fmt::print("warning          {} ({} times)\n", text, count);
+    if (arguments.profile) print_profile(summary);
     fmt::print("results          {}\n", options.directory);
     return outcome == RunOutcome::done ? 0 : interrupted_code;
 }
@@ -93,6 +111,7 @@ int parse_and_run(int argc, char** argv) {
     run_command.add_option("--threads", arguments.run.threads, "Number of threads; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
+    run_command.add_flag("--profile", arguments.profile, "Print what each stage of the step took");
     add_overrides(run_command, arguments);
 
     CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");

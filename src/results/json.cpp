@@ -98,6 +98,8 @@ std::string json_number(double value) {
 std::string make_summary_json(const Summary& summary) {
     Block stages('{', '}', 1);
     for (const auto& [name, seconds] : summary.stages) stages.add(name, json_number(seconds));
+    Block contact('{', '}', 1);
+    for (const auto& [name, mean] : summary.contact_per_step) contact.add(name, json_number(mean));
     Block momentum_error('{', '}', 1);
     momentum_error.add("linear", json_number(summary.momentum_error_linear));
     momentum_error.add("angular", json_number(summary.momentum_error_angular));
@@ -125,6 +127,7 @@ std::string make_summary_json(const Summary& summary) {
     block.add("ns_per_particle_step", json_number(summary.ns_per_particle_step));
     block.add("peak_memory_bytes", json_number(summary.peak_memory_bytes));
     block.add("stages", stages.str());
+    block.add("contact_per_step", contact.str());
     block.add("energy", make_energy(summary.energy, summary.residual_relative));
     block.add("momentum_error", momentum_error.str());
     block.add("warnings", warnings.str());

@@ -59,6 +59,8 @@ struct Summary {
     double simulated_time = 0, time_step = 0, stable_step = 0;
     double wall_seconds = 0, ns_per_particle_step = 0, peak_memory_bytes = 0;
     std::vector<std::pair<std::string, double>> stages;  ///< seconds a stage, in the order of the step
+    /// Contact nodes, pairs with a row, sweeps and searches, mean of a step.
+    std::vector<std::pair<std::string, double>> contact_per_step;
     EnergyBudget energy;
     double residual_relative = 0;      ///< |residual| / throughput, largest over the run
     double momentum_error_linear = 0;  ///< |p - p0 - impulses| / momentum scale, largest over the run

@@ -304,6 +304,11 @@ class Run {
                            {"contact", s.contact},
                            {"drift", s.drift},
                            {"output", s.output}};
+        const double steps = static_cast<double>(std::max<std::int64_t>(1, now_.step));
+        summary_.contact_per_step = {{"nodes", static_cast<double>(now_.contact_nodes) / steps},
+                                     {"rows", static_cast<double>(now_.contacts) / steps},
+                                     {"sweeps", static_cast<double>(now_.sweeps) / steps},
+                                     {"searches", static_cast<double>(now_.searches) / steps}};
         if (now_.unconverged > 0)
             summary_.warnings.emplace_back(
                 fmt::format(

@@ -131,6 +131,7 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     now.contact_nodes += report.n_nodes;
     now.contacts += report.n_contacts;
     now.sweeps += report.sweeps;
+    now.searches += report.searched ? 1 : 0;
     if (!report.converged && now.unconverged++ == 0) now.first_unconverged = now.step;
 }
 

@@ -52,7 +52,7 @@ struct StepContext {
     /// there.
     double part_done() const { return first ? 0.0 : 0.5; }
 
-    std::int64_t contact_nodes = 0, contacts = 0, sweeps = 0;  ///< summed over the steps
+    std::int64_t contact_nodes = 0, contacts = 0, sweeps = 0, searches = 0;  ///< summed over the steps
 };
 
 /// Forces and contact at the present position: velocities become those of n+1/2; nothing moves.

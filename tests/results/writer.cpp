@@ -208,7 +208,8 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
         "assert set(s) == set(\"version title outcome dimension threads instructions deck_hash state_hash "
         "steps "
         "n_particles n_bonds n_grains simulated_time time_step stable_step wall_seconds "
-        "ns_per_particle_step peak_memory_bytes stages energy momentum_error warnings\".split())",
+        "ns_per_particle_step peak_memory_bytes stages contact_per_step energy momentum_error "
+        "warnings\".split())",
         scratch.path("run/summary.json")));
 }
 

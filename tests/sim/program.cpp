@@ -106,6 +106,12 @@ TEST_CASE("Program: run writes its results and says where") {
     const auto hash = [](const std::string& text) { return text.substr(text.find("\"state_hash\""), 32); };
     CHECK(hash(read_file(again + "/summary.json")) == hash(summary));
 
+    CHECK_FALSE(contains(result.out, "ns/particle"));
+    const Result profiled = quern(folder, {"run", deck, "--profile", "-o", again});
+    CHECK(profiled.code == 0);
+    for (const char* line : {"internal_forces", "contact nodes", "contact searches", "kB a particle"})
+        CHECK_MESSAGE(contains(profiled.out, line), line);
+
     // --set reaches the run.
     const std::string other = deck + ".other";
     CHECK(quern(folder, {"run", deck, "--set", "gravity=[0, -5]", "-o", other}).code == 0);
