@@ -43,7 +43,8 @@ void ContactNodes<Dim>::find(const ContactScene<Dim>& scene) {
     searched_ = !(options_.skin > 0.0) || moved(scene);
     if (searched_) search(scene);
     parallel::for_each(scene.grains.size(), [&](std::size_t g) { fill_slots(scene, static_cast<int>(g)); });
-    index_nodes();
+    if (searched_) index_nodes();
+    order_slots();
 }
 
 template <int Dim>
@@ -107,9 +108,10 @@ void ContactNodes<Dim>::keep_only(const std::vector<std::uint8_t>& wanted) {
     grain_slots_.back() = static_cast<int>(n_kept);
     slots_.resize(n_kept);
     index_nodes();
+    order_slots();
 }
 
-/// Slots of every node, ordered by where their mass is.
+/// Slots of every node.
 template <int Dim>
 void ContactNodes<Dim>::index_nodes() {
     node_begin_.assign(static_cast<std::size_t>(n_nodes_) + 1, 0);
@@ -119,6 +121,11 @@ void ContactNodes<Dim>::index_nodes() {
     fill_.assign(node_begin_.begin(), node_begin_.end());
     for (std::size_t s = 0; s < slots_.size(); ++s)
         node_slots_[fill_[slots_[s].node]++] = static_cast<int>(s);
+}
+
+/// Slots of a node, ordered by where their mass is now.
+template <int Dim>
+void ContactNodes<Dim>::order_slots() {
     parallel::for_each(
         static_cast<std::size_t>(n_nodes_),
         [&](std::size_t a) {

@@ -121,6 +121,7 @@ class ContactNodes {
     void select(const ContactScene<Dim>& scene);
     void number_nodes();
     void index_nodes();
+    void order_slots();
     void list_candidates(const ContactScene<Dim>& scene, int grain, Scratch& scratch);
     void fill_slots(const ContactScene<Dim>& scene, int grain);
     IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
