@@ -63,7 +63,8 @@ std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>&
                                         double h, const GridContactOptions& options);
 
 /// Whether two surfaces near a node, or a surface and a wall, cannot meet there before one of them has moved
-/// by `skin` [h].
+/// by `skin` [h]: their gap g > 4 skin h, or their interface lies 0.75 h + 2 skin h from the node or further
+/// (g [m] as above). Each moves by a skin at most, so g > 2 skin h would do if the fits were exact.
 template <int Dim>
 bool stay_apart(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, double skin,
                 const GridContactOptions& options);

@@ -38,7 +38,8 @@ void for_each(std::size_t n, Body&& body, std::size_t serial_below = 2) {
 }
 
 /// Sum of term(i) over [0, n) in blocks, added block by block: the same bits for any number of threads. T
-/// needs `+=` and a zero value given as `zero`. Terms that are work for a thread each want `block` 1.
+/// needs `+=` and a zero value given as `zero`. `block`: 256 for terms of a particle, 1 for those that
+/// are a thread's work; fewer than max(2, block / 16) blocks stay on the calling thread.
 template <class T, class Term>
 T sum(std::size_t n, const T& zero, Term&& term, std::size_t block = 256) {
     const std::size_t n_blocks = (n + block - 1) / block;
@@ -50,7 +51,7 @@ T sum(std::size_t n, const T& zero, Term&& term, std::size_t block = 256) {
             for (std::size_t i = b * block, end = std::min(n, i + block); i < end; ++i) total += term(i);
             partial[b] = total;
         },
-        block == 1 ? 2 : 16);
+        std::max<std::size_t>(2, block / 16));
     T total = zero;
     for (const T& part : partial) total += part;
     return total;

@@ -18,9 +18,9 @@ inline constexpr int batch_lanes = 8;
 /// Constants of one bond, for scale 1, shared by all lanes.
 struct BatchBond {
     double length;   ///< xi [m]
-    double coupled;  ///< k xi
-    double direct;   ///< c
-    double preload;  ///< c xi
+    double coupled;  ///< k xi [m^7; 2D: m^5], k = w V_i V_j
+    double direct;   ///< c [N/m; 2D: N/m^2]
+    double preload;  ///< c xi [N; 2D: N/m]
 };
 
 struct BatchTopology {
@@ -28,7 +28,7 @@ struct BatchTopology {
     const int* first;       ///< [n + 1] half list: first bond of a row
     const int* partner;     ///< [n_bonds]
     const BatchBond* bond;  ///< [n_bonds]
-    const double* node;     ///< [n] g, or null: no dilatation
+    const double* node;     ///< [n] g [N/m^15; 2D: N/m^12], or null: no dilatation
 };
 
 /// Rows of eight lanes, aligned to 64 bytes.

@@ -48,8 +48,6 @@ class BondBatch {
     /// f += the same law with `time` [s] times the rate of extension in place of the extension.
     void add_viscous_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive, double time) const;
 
-    bool empty() const { return bond_.empty(); }
-
   private:
     template <bool rate>
     BrokenBonds add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,

@@ -47,7 +47,6 @@ class BondNetwork {
     void add_batch_damping(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
         batch_.add_viscous_forces(batch, alive, material_.bond_damping);
     }
-    bool has_batches() const { return kernel_.kernel == Kernel::fast; }
 
     /// f [n] += derivative of the internal forces at the reference state along u [n] [m], at scale 1.
     void add_linear_forces(std::span<const Vec<Dim>> u, std::span<Vec<Dim>> f) const;

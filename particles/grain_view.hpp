@@ -20,7 +20,6 @@ class BondBits {
     bool empty() const { return bytes_.empty(); }  ///< all intact
     bool operator[](int bond) const { return (bytes_[static_cast<std::size_t>(bond)] >> bit_ & 1) != 0; }
     std::span<const std::uint8_t> bytes() const { return bytes_; }
-    int bit() const { return bit_; }
 
   private:
     std::span<const std::uint8_t> bytes_;

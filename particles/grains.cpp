@@ -32,18 +32,10 @@ Spin<3> solve_inertia(const Mat<3>& second_moment, const Spin<3>& L) {
 template <int Dim>
 Mat<Dim> best_fit_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x,
                            std::span<const double> mass) {
-    // sum m X = 0: the centre of x drops out. Two sums at a time: one alone waits for its own additions.
-    Mat<Dim> even = Mat<Dim>::Zero(), odd = Mat<Dim>::Zero();
-    const auto term = [&](int p) -> Mat<Dim> {
-        return mass[grain.first + p] * x[grain.first + p] * grain.shape->X[p].transpose();
-    };
-    int p = 0;
-    for (; p + 1 < grain.count; p += 2) {
-        even += term(p);
-        odd += term(p + 1);
-    }
-    if (p < grain.count) even += term(p);
-    return nearest_rotation(Mat<Dim>(even + odd));
+    Mat<Dim> A = Mat<Dim>::Zero();
+    for (int p = 0; p < grain.count; ++p)  // sum m X = 0: the centre of x drops out
+        A += mass[grain.first + p] * x[grain.first + p] * grain.shape->X[p].transpose();
+    return nearest_rotation(A);
 }
 
 template <int Dim>

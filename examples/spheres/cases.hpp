@@ -36,10 +36,12 @@ struct Report {
     ReportOptions options;
     ReportChecks checks;
     double linear_error = 0.0, angular_error = 0.0;  ///< largest of all runs by the pair rule with impulses
+    double energy_residual = 0.0;                    ///< largest of all runs
 
     RunRecord run(const std::string& deck, const std::vector<std::string>& overrides,
                   const std::string& directory = "case") {
         RunRecord record = run_case(folder + deck, overrides, options.directory + "/" + directory);
+        energy_residual = std::max(energy_residual, record.summary.residual_relative);
         const auto other = [](const std::string& item) {
             return item == "params.rule=seed" || item == "params.coupling=flip";
         };

@@ -34,6 +34,7 @@ int body(const ReportOptions& options) {
     fmt::print("\nMomenta, all runs\n");
     report.checks.at_most("linear momentum, relative error", report.linear_error, 1e-12);
     report.checks.at_most("angular momentum, relative error", report.angular_error, 1e-12);
+    report.checks.at_most("energy residual, all runs and rules", report.energy_residual, 1e-3);
     return report.checks.verdict();
 }
 

@@ -55,7 +55,7 @@ struct Bounce {
     double slip_ratio = 0, spin_ratio = 0;   ///< tangential, rotational change of the first disk over normal
     double contact_loss = 0, vibration = 0;  ///< over the kinetic energy before
     double force_mismatch = 0;               ///< largest |F_1 + F_2| over the largest |F_1|
-    double linear_error = 0, angular_error = 0;
+    double linear_error = 0, angular_error = 0, energy_residual = 0;
     std::vector<double> time, force;  ///< for charts
 };
 
@@ -126,6 +126,7 @@ inline Bounce measure(const Case& c, const RunRecord& record) {
     b.vibration = energy.elastic / record.history[0].energy.kinetic;
     b.linear_error = record.summary.momentum_error_linear;
     b.angular_error = record.summary.momentum_error_angular;
+    b.energy_residual = record.summary.residual_relative;
     return b;
 }
 

@@ -26,7 +26,8 @@ class Bench {
         const Bounce b = measure(c, run_case(deck, c.overrides(), directory_ + "/case"));
         table_.add(c.name(),
                    {b.restitution, b.duration, b.peak, b.spin, b.slip_ratio, b.spin_ratio, b.contact_loss,
-                    b.vibration, b.force_mismatch, b.linear_error, b.angular_error});
+                    b.vibration, b.force_mismatch, b.linear_error, b.angular_error, b.energy_residual});
+        energy_residual_ = std::max(energy_residual_, b.energy_residual);
         if (c.rule == "pair" && c.coupling == "impulse") {
             linear_error_ = std::max(linear_error_, b.linear_error);
             angular_error_ = std::max(angular_error_, b.angular_error);
@@ -50,13 +51,16 @@ class Bench {
         fmt::print("\nMomenta, pair rule, all runs\n");
         checks.at_most("linear momentum, relative error", linear_error_, 1e-12);
         checks.at_most("angular momentum, relative error", angular_error_, 1e-10);
+        checks.at_most("energy residual, all runs and rules", energy_residual_, 1e-3);
     }
     const std::string& directory() const { return directory_; }
 
   private:
     std::string directory_;
     ReportTable table_{{"restitution", "duration", "peak_force", "spin", "slip_ratio", "spin_ratio",
-                        "contact_loss", "vibration", "force_mismatch", "linear_error", "angular_error"}};
+                        "contact_loss", "vibration", "force_mismatch", "linear_error", "angular_error",
+                        "energy_residual"}};
+    double energy_residual_ = 0.0;                     ///< largest of all runs
     double linear_error_ = 0.0, angular_error_ = 0.0;  ///< largest, of pair/impulse
 };
 

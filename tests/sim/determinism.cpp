@@ -82,18 +82,25 @@ TEST_CASE("Determinism: results do not depend on how long a search for contact n
     for (const std::string skin : {"0.02", "0.1", "0.25"}) CHECK(with(skin) == every_step);
 }
 
-TEST_CASE("Determinism: batches and single grains agree to round-off, breaking included") {
-    const std::vector<std::string> weak = {"materials.light.critical_stretch=0.003"};
-    std::vector<std::string> single_weak = weak;
-    single_weak.push_back("compute.kernel=single");
-    const RunRecord batched = run_text(packing, weak);
-    const RunRecord single = run_text(packing, single_weak);
-    CHECK(batched.summary.energy.fracture < 0.0);
-    CHECK(std::abs(batched.summary.energy.fracture / single.summary.energy.fracture - 1.0) <
-          1e-9);  // measured 6.7e-13, bound 1e-9
-    CHECK(std::abs(batched.summary.energy.kinetic / single.summary.energy.kinetic - 1.0) <
-          1e-12);                                     // measured 1.2e-15, bound 1e-12
-    CHECK(batched.summary.residual_relative < 5e-4);  // measured 2.1e-4, bound 5e-4
+TEST_CASE("Determinism: every kernel and instruction set agrees to round-off, breaking included") {
+    const auto run_with = [](const std::string& choice) {
+        return run_text(packing, {"materials.light.critical_stretch=0.003", "compute." + choice}).summary;
+    };
+    const Summary printed = run_with("kernel=reference");
+    CHECK(printed.energy.fracture < 0.0);
+    CHECK(printed.residual_relative < 5e-4);  // measured 2.1e-4, bound 5e-4
+    std::vector<std::string> choices = {"kernel=single", "kernel=auto", "instructions=plain"};
+    if (has_instructions(Instructions::avx2)) choices.push_back("instructions=avx2");
+    if (has_instructions(Instructions::avx512)) choices.push_back("instructions=avx512");
+    for (const std::string& choice : choices) {
+        CAPTURE(choice);
+        const Summary summary = run_with(choice);
+        if (choice.rfind("instructions=", 0) == 0) CHECK("instructions=" + summary.instructions == choice);
+        CHECK(summary.state_hash != printed.state_hash);  // the choice was taken
+        const EnergyBudget &energy = summary.energy, &expected = printed.energy;
+        CHECK(std::abs(energy.fracture / expected.fracture - 1.0) < 1e-9);
+        CHECK(std::abs(energy.kinetic / expected.kinetic - 1.0) < 1e-12);
+    }
 }
 
 TEST_CASE("Determinism: the hash sees every change of the deck that moves a particle") {
