@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct ContactScene {
     std::span<const double> volume;  ///< [n] [m^3; 2D: m^2]
     std::span<const Wall<Dim>> walls;
     const FrictionTable* friction = nullptr;
+    /// No particle and no wall has gone further than this since the first step [m]: grows from step to step
+    /// by the longest way of each. Infinite: not known.
+    double travelled = std::numeric_limits<double>::infinity();
 };
 
 /// The state between kick and drift. Contact changes `v` and, in the flip coupling, sets `drift`.
@@ -55,6 +59,8 @@ struct ContactTrial {
     std::span<const Vec<Dim>> v_before;  ///< [n] velocity before this step's forces [m/s]
     std::span<Vec<Dim>> v;               ///< [n] in: with this step's forces; out: with contact [m/s]
     std::span<Vec<Dim>> drift;  ///< [n] velocity that positions move with; read only if `moves_with_grid`
+    /// No particle and no wall is faster, with this step's forces [m/s]. Infinite: not known.
+    double largest_speed = std::numeric_limits<double>::infinity();
 };
 
 /// Energies are work done on the particles in this step, impulse times the mean of the velocities before
@@ -84,7 +90,7 @@ struct GridContactOptions {
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
-    double skin = 0.1;        ///< contact nodes are searched anew when something has moved this far [h]
+    double skin = 0.2;        ///< contact nodes are searched anew when something has moved this far [h]
     bool tile = true;         ///< gap where two fitted profiles come closest; false: at mean positions
     bool curvature = true;    ///< profiles know the reference curvature
     bool rotation = true;     ///< impulses act at one point

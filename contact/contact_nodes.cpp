@@ -6,7 +6,7 @@
 #include <climits>
 #include <numeric>
 
-#include "grid/parallel.hpp"
+#include "grid/shape_functions.hpp"
 
 namespace quern {
 
@@ -14,6 +14,11 @@ namespace {
 
 /// Below this smallest moment of inertia [m h^2] a slot is a point or a line and does not turn.
 constexpr double degenerate_inertia = 1e-3;
+constexpr double furthest_candidate = 1.5;  ///< reach of the quadratic functions [h]
+/// Contact may make a body this much faster than what moves without it.
+constexpr double faster_by_contact = 2.0;
+/// The more steps between two choices, the more nodes are awake that need not be.
+constexpr double steps_between_choices = 4.0;
 
 bool invert_inertia(const Mat<2>& second, double m, double h, Eigen::Matrix<double, 1, 1>& Y) {
     const double inertia = second.trace();
@@ -39,31 +44,15 @@ bool lower_first(const Vec<Dim>& a, const Vec<Dim>& b) {
 }  // namespace
 
 template <int Dim>
-void ContactNodes<Dim>::find(const ContactScene<Dim>& scene) {
-    searched_ = !(options_.skin > 0.0) || moved(scene);
-    if (searched_) search(scene);
-    parallel::for_each(scene.grains.size(), [&](std::size_t g) { fill_slots(scene, static_cast<int>(g)); });
-    if (searched_) index_nodes();
-    order_slots();
-}
-
-template <int Dim>
-bool ContactNodes<Dim>::moved(const ContactScene<Dim>& scene) const {
-    if (x_searched_.size() != scene.x.size() || wall_searched_.size() != scene.walls.size()) return true;
+void ContactNodes<Dim>::find(const ContactScene<Dim>& scene, double ahead) {
+    ahead *= faster_by_contact;
+    travelled_ = scene.travelled + ahead;
     const double skin = options_.skin * grid_.h();
-    for (std::size_t w = 0; w < scene.walls.size(); ++w)
-        if (std::abs(scene.walls[w].normal.dot(scene.walls[w].point - wall_searched_[w])) > skin) return true;
-    const int n_moved = parallel::sum(
-        scene.grains.size(), 0,
-        [&](std::size_t g) {
-            const Grain<Dim>& grain = scene.grains[g];
-            double furthest = 0.0;
-            for (int p = grain.first; p < grain.first + grain.count; ++p)
-                furthest = std::max(furthest, (scene.x[p] - x_searched_[p]).squaredNorm());
-            return furthest > skin * skin ? 1 : 0;
-        },
-        32);
-    return n_moved > 0;
+    path_between_choices_ = std::clamp(steps_between_choices * ahead, 0.05 * skin, 0.5 * skin);
+    searched_ = !(skin > 0.0) || windows_.size() != scene.grains.size() || scene.travelled >= search_at_;
+    if (!searched_) return;
+    search(scene);
+    search_at_ = scene.travelled + skin;
 }
 
 template <int Dim>
@@ -72,67 +61,17 @@ void ContactNodes<Dim>::search(const ContactScene<Dim>& scene) {
     windows_.resize(n_grains);
     touched_.resize(n_grains);
     candidates_.resize(n_grains);
-    support_.resize(n_grains);
-    n_selected_.resize(n_grains);
     scratch_.resize(static_cast<std::size_t>(parallel::n_threads()));
     mark_touched(scene);
-    select(scene);
-    number_nodes();
+    make_pages();
+    number_nodes(scene);
+    make_sites();
     parallel::for_each(n_grains, [&](std::size_t g) {
         list_candidates(scene, static_cast<int>(g),
                         scratch_[static_cast<std::size_t>(parallel::thread_id())]);
     });
-    if (options_.skin > 0.0) x_searched_.assign(scene.x.begin(), scene.x.end());
-    wall_searched_.clear();
-    for (const Wall<Dim>& wall : scene.walls) wall_searched_.push_back(wall.point);
-}
-
-template <int Dim>
-void ContactNodes<Dim>::keep_only(const std::vector<std::uint8_t>& wanted) {
-    std::vector<int>& number = fill_;
-    number.assign(static_cast<std::size_t>(n_nodes_), -1);
-    n_nodes_ = 0;
-    for (std::size_t a = 0; a < number.size(); ++a)
-        if (wanted[a]) number[a] = n_nodes_++;
-    std::size_t n_kept = 0;
-    for (std::size_t g = 0; g + 1 < grain_slots_.size(); ++g) {
-        const int first = grain_slots_[g];
-        grain_slots_[g] = static_cast<int>(n_kept);
-        for (int s = first; s < grain_slots_[g + 1]; ++s)
-            if (number[slots_[s].node] >= 0) {
-                slots_[n_kept] = slots_[s];
-                slots_[n_kept].node = number[slots_[s].node];
-                ++n_kept;
-            }
-    }
-    grain_slots_.back() = static_cast<int>(n_kept);
-    slots_.resize(n_kept);
-    index_nodes();
-    order_slots();
-}
-
-/// Slots of every node.
-template <int Dim>
-void ContactNodes<Dim>::index_nodes() {
-    node_begin_.assign(static_cast<std::size_t>(n_nodes_) + 1, 0);
-    for (const Slot<Dim>& slot : slots_) ++node_begin_[slot.node + 1];
-    std::partial_sum(node_begin_.begin(), node_begin_.end(), node_begin_.begin());
-    node_slots_.resize(slots_.size());
-    fill_.assign(node_begin_.begin(), node_begin_.end());
-    for (std::size_t s = 0; s < slots_.size(); ++s)
-        node_slots_[fill_[slots_[s].node]++] = static_cast<int>(s);
-}
-
-/// Slots of a node, ordered by where their mass is now.
-template <int Dim>
-void ContactNodes<Dim>::order_slots() {
-    parallel::for_each(
-        static_cast<std::size_t>(n_nodes_),
-        [&](std::size_t a) {
-            std::sort(node_slots_.begin() + node_begin_[a], node_slots_.begin() + node_begin_[a + 1],
-                      [&](int i, int j) { return lower_first<Dim>(slots_[i].xb, slots_[j].xb); });
-        },
-        256);
+    wake_at_.assign(found_begin_.size() - 1, -std::numeric_limits<double>::infinity());
+    awake_.resize(wake_at_.size());
 }
 
 template <int Dim>
@@ -186,8 +125,10 @@ bool ContactNodes<Dim>::near_wall(const ContactScene<Dim>& scene, const IntVec<D
     });
 }
 
+/// Pages for all nodes of all windows, ordered by colour and place.
 template <int Dim>
-void ContactNodes<Dim>::select(const ContactScene<Dim>& scene) {
+void ContactNodes<Dim>::make_pages() {
+    marks_.clear();
     for (const Window& window : windows_) {
         IntVec<Dim> last = window.lo + window.size - IntVec<Dim>::Ones();
         IntVec<Dim> node = window.lo;
@@ -217,50 +158,87 @@ void ContactNodes<Dim>::select(const ContactScene<Dim>& scene) {
             }
         }
     }
-    const std::size_t n_grains = scene.grains.size();
-    parallel::for_each(n_grains, [&](std::size_t g) {
+    pages_.clear();
+    for (int i = 0; i < marks_.n_pages(); ++i) pages_.push_back({marks_.place(i), i, marks_.colour(i)});
+    std::sort(pages_.begin(), pages_.end(), [](const Page& a, const Page& b) {
+        return a.colour != b.colour ? a.colour < b.colour : a.place < b.place;
+    });
+    colour_pages_.assign(marks_.n_colours + 1, 0);
+    for (const Page& page : pages_) ++colour_pages_[page.colour + 1];
+    std::partial_sum(colour_pages_.begin(), colour_pages_.end(), colour_pages_.begin());
+}
+
+/// Numbers the nodes where something can touch, page by page.
+template <int Dim>
+void ContactNodes<Dim>::number_nodes(const ContactScene<Dim>& scene) {
+    parallel::for_each(windows_.size(), [&](std::size_t g) {
         for (const int i : touched_[g])
             std::atomic_ref<std::int32_t>(marks_[wrapped(windows_[g].node(i))])
                 .fetch_add(1, std::memory_order_relaxed);
     });
-    parallel::for_each(n_grains, [&](std::size_t g) {  // selected ones to the front, both parts ascending
-        const auto wanted = [&](int i) {
-            const IntVec<Dim> node = windows_[g].node(i);
-            return options_.all_nodes || marks_[wrapped(node)] > 1 || near_wall(scene, node);
-        };
-        const auto end = std::stable_partition(touched_[g].begin(), touched_[g].end(), wanted);
-        n_selected_[g] = static_cast<int>(end - touched_[g].begin());
+    page_found_.assign(pages_.size() + 1, 0);
+    std::vector<int> n_sites(pages_.size() + 1, 0);
+    parallel::for_each(pages_.size(), [&](std::size_t k) {
+        const std::span<std::int32_t> marks = marks_.values(pages_[k].number);
+        for (int i = 0; i < marks_.page_size; ++i) {
+            if (marks[i] == 0) continue;
+            const bool wanted = options_.all_nodes || marks[i] > 1 ||
+                                near_wall(scene, grid_.node(marks_.node(pages_[k].number, i)));
+            if (!wanted) {
+                marks[i] = 0;
+                continue;
+            }
+            ++page_found_[k + 1];
+            n_sites[k + 1] += marks[i];
+        }
+    });
+    std::partial_sum(page_found_.begin(), page_found_.end(), page_found_.begin());
+    std::partial_sum(n_sites.begin(), n_sites.end(), n_sites.begin());
+    found_begin_.resize(static_cast<std::size_t>(page_found_.back()) + 1);
+    found_begin_.back() = n_sites.back();
+    parallel::for_each(pages_.size(), [&](std::size_t k) {
+        int found = page_found_[k], site = n_sites[k];
+        const std::span<std::int32_t> marks = marks_.values(pages_[k].number);
+        for (int colour = 0; colour < power(2, Dim); ++colour)
+            for (int i = 0; i < marks_.page_size; ++i) {
+                if (marks[i] == 0 || marks_.parity(i) != colour) continue;
+                found_begin_[found] = site;
+                site += marks[i];
+                marks[i] = ++found;
+            }
     });
 }
 
 template <int Dim>
-void ContactNodes<Dim>::number_nodes() {
+void ContactNodes<Dim>::make_sites() {
     const std::size_t n_grains = windows_.size();
-    grain_slots_.assign(n_grains + 1, 0);
-    std::partial_sum(n_selected_.begin(), n_selected_.end(), grain_slots_.begin() + 1);
-    slots_.resize(static_cast<std::size_t>(grain_slots_.back()));
-    n_nodes_ = 0;
-    for (std::size_t g = 0; g < n_grains; ++g) {
-        for (int k = 0; k < n_selected_[g]; ++k) {
-            Slot<Dim>& slot = slots_[grain_slots_[g] + k];
-            slot.grain = static_cast<int>(g);
-            slot.index = windows_[g].node(touched_[g][k]);
-            std::int32_t& mark = marks_[wrapped(slot.index)];
-            if (mark >= 0) mark = -1 - n_nodes_++;
-            slot.node = -1 - mark;
-        }
-    }
+    grain_sites_.assign(n_grains + 1, 0);
     parallel::for_each(n_grains, [&](std::size_t g) {
-        for (const int i : touched_[g])
-            std::atomic_ref<std::int32_t>(marks_[wrapped(windows_[g].node(i))])
-                .store(0, std::memory_order_relaxed);
+        grain_sites_[g + 1] =
+            static_cast<int>(std::count_if(touched_[g].begin(), touched_[g].end(),
+                                           [&](int i) { return marks_[wrapped(windows_[g].node(i))] > 0; }));
     });
+    std::partial_sum(grain_sites_.begin(), grain_sites_.end(), grain_sites_.begin());
+    sites_.resize(static_cast<std::size_t>(grain_sites_.back()));
+    parallel::for_each(n_grains, [&](std::size_t g) {
+        Site* site = sites_.data() + grain_sites_[g];
+        for (const int i : touched_[g]) {
+            const IntVec<Dim> index = windows_[g].node(i);
+            const std::int32_t mark = marks_[wrapped(index)];
+            if (mark > 0) *site++ = {static_cast<int>(g), mark - 1, index, 0, 0};
+        }
+    });
+    found_sites_.resize(sites_.size());
+    std::vector<int> next(found_begin_.begin(), found_begin_.end() - 1);
+    for (std::size_t s = 0; s < sites_.size(); ++s)
+        found_sites_[next[sites_[s].node]++] = static_cast<int>(s);
 }
 
-/// Particles that have a slot in reach of their quadratic functions, or will before the next search.
+/// Particles that have a site in reach of their quadratic functions, or will before the next search.
 template <int Dim>
 void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, Scratch& scratch) {
-    const auto [first, last] = slots_of_grain(g);
+    candidates_[g].clear();
+    const int first = grain_sites_[g], last = grain_sites_[g + 1];
     if (first == last) return;
     const Grain<Dim>& grain = scene.grains[g];
     const Window& window = windows_[g];
@@ -268,14 +246,13 @@ void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, S
     scratch.near_cell.assign(static_cast<std::size_t>(window.n()), 0);
     constexpr int reach = 2, side = 2 * reach;  // cells of particles near a node: two to each side of it
     for (int s = first; s < last; ++s) {
-        Slot<Dim>& slot = slots_[s];
-        scratch.window[window.local(slot.index)] = s - first;
-        slot.n_candidates = 0;
+        const Site& site = sites_[s];
+        scratch.window[window.local(site.index)] = s;
         for (int k = 0; k < power(side, Dim); ++k) {
             IntVec<Dim> cell;
             bool inside = true;
             for (int a = 0, rest = k; a < Dim; ++a, rest /= side) {
-                cell[a] = slot.index[a] - reach + rest % side;
+                cell[a] = site.index[a] - reach + rest % side;
                 inside = inside && cell[a] >= window.lo[a] && cell[a] < window.lo[a] + window.size[a];
             }
             if (inside) scratch.near_cell[window.local(cell)] = 1;
@@ -283,11 +260,12 @@ void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, S
     }
     scratch.near.clear();
     const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
-    const double furthest = 1.5 + options_.skin;
-    std::size_t next_surface = 0;
-    for (int i = 0; i < grain.count; ++i) {
-        const bool on_surface = next_surface < surface.size() && surface[next_surface].node == i;
-        const int surface_index = on_surface ? static_cast<int>(next_surface++) : -1;
+    const double furthest = furthest_candidate + options_.skin;
+    std::int32_t next_surface = 0;
+    for (std::int32_t i = 0; i < grain.count; ++i) {
+        const bool on_surface =
+            next_surface < static_cast<std::int32_t>(surface.size()) && surface[next_surface].node == i;
+        const Candidate candidate = on_surface ? -1 - next_surface++ : i;
         const Vec<Dim> in_cells = grid_.in_cells(scene.x[grain.first + i]);
         const IntVec<Dim> cell = CartesianGrid<Dim>::cell(in_cells);
         if (!scratch.near_cell[window.local(cell)]) continue;
@@ -300,71 +278,143 @@ void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, S
                        node[a] < window.lo[a] + window.size[a];
             }
             if (!near) continue;
-            const int slot = scratch.window[window.local(node)];
-            if (slot < 0) continue;
-            scratch.near.push_back({slot, {grain.first + i, surface_index}});
-            ++slots_[first + slot].n_candidates;
+            const int s = scratch.window[window.local(node)];
+            if (s < 0) continue;
+            scratch.near.push_back({s, candidate});
+            ++sites_[s].n_candidates;
         }
     }
-    std::size_t total = 0;
+    int total = 0;
     for (int s = first; s < last; ++s) {
-        slots_[s].candidate = total;
-        total += static_cast<std::size_t>(slots_[s].n_candidates);
-        slots_[s].n_candidates = 0;
+        sites_[s].candidate = total;
+        total += sites_[s].n_candidates;
+        sites_[s].n_candidates = 0;
     }
-    candidates_[g].resize(total);
-    support_[g].resize(total);
-    for (const auto& [slot, candidate] : scratch.near) {
-        Slot<Dim>& to = slots_[first + slot];
-        candidates_[g][to.candidate + static_cast<std::size_t>(to.n_candidates++)] = candidate;
-    }
+    candidates_[g].resize(static_cast<std::size_t>(total));
+    for (const auto& [s, candidate] : scratch.near)
+        candidates_[g][sites_[s].candidate + sites_[s].n_candidates++] = candidate;
 }
 
 template <int Dim>
-void ContactNodes<Dim>::fill_slots(const ContactScene<Dim>& scene, int g) {
-    const double h = grid_.h();
-    const auto [first, last] = slots_of_grain(g);
-    Support<Dim>* support = support_[g].data();
-    for (int s = first; s < last; ++s) {
-        Slot<Dim>& slot = slots_[s];
-        const Candidate* const candidate = candidates_[g].data() + slot.candidate;
-        const Vec<Dim> x_node = grid_.node_position(slot.index);
-        const Vec<Dim> index = slot.index.template cast<double>();
-        int n = 0;
-        double volume = 0.0, m = 0.0;
-        Vec<Dim> gradient = Vec<Dim>::Zero(), xb = Vec<Dim>::Zero();
-        for (int k = 0; k < slot.n_candidates; ++k) {
-            const auto [p, surface] = candidate[k];
-            const Vec<Dim> t = grid_.in_cells(scene.x[p]) - index;
-            if (t.cwiseAbs().maxCoeff() >= 1.5) continue;
-            const double V = scene.volume[p];
-            gradient -= V / h * quadratic_gradient<Dim>(t);  // by the node: minus by the point
-            if (t.minCoeff() < -1.0 || t.maxCoeff() >= 1.0) continue;
-            double N = 1.0;
-            for (int a = 0; a < Dim; ++a) N *= 1.0 - std::abs(t[a]);
-            const double w = options_.nodal ? N : (surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
-            const Vec<Dim> d = scene.x[p] - x_node;
-            const double mw = scene.mass[p] * w;
-            support[n++] = {p, surface, N, w, mw, d};
-            volume += N * V;
-            m += mw;
-            xb += mw * d;
+void ContactNodes<Dim>::choose_all() {
+    std::fill(awake_.begin(), awake_.end(), std::uint8_t{1});
+    choose_at_ = travelled_;
+    wake();
+}
+
+/// Makes slots for the nodes that are awake.
+template <int Dim>
+void ContactNodes<Dim>::wake() {
+    const auto n_sites = [&](int i) { return found_begin_[i + 1] - found_begin_[i]; };
+    page_nodes_.assign(pages_.size() + 1, 0);
+    page_slots_.assign(pages_.size() + 1, 0);
+    parallel::for_each(pages_.size(), [&](std::size_t k) {
+        for (int i = page_found_[k]; i < page_found_[k + 1]; ++i)
+            if (awake_[i]) {
+                ++page_nodes_[k + 1];
+                page_slots_[k + 1] += n_sites(i);
+            }
+    });
+    std::partial_sum(page_nodes_.begin(), page_nodes_.end(), page_nodes_.begin());
+    std::partial_sum(page_slots_.begin(), page_slots_.end(), page_slots_.begin());
+    const std::size_t n_slots = static_cast<std::size_t>(page_slots_.back());
+    node_slots_.resize(static_cast<std::size_t>(page_nodes_.back()) + 1);
+    node_slots_.back() = page_slots_.back();
+    slot_site_.resize(n_slots);
+    slot_order_.resize(n_slots);
+    slots_.resize(n_slots);
+    if (support_.size() < pages_.size()) support_.resize(pages_.size());
+    parallel::for_each(pages_.size(), [&](std::size_t k) {
+        int node = page_nodes_[k], slot = page_slots_[k];
+        std::size_t n_candidates = 0;
+        for (int i = page_found_[k]; i < page_found_[k + 1]; ++i) {
+            if (!awake_[i]) continue;
+            node_slots_[node++] = slot;
+            for (int j = found_begin_[i]; j < found_begin_[i + 1]; ++j, ++slot) {
+                slot_site_[slot] = found_sites_[j];
+                slot_order_[slot] = slot;
+                n_candidates += static_cast<std::size_t>(sites_[found_sites_[j]].n_candidates);
+            }
         }
-        if (m > 0.0) xb /= m;
-        Mat<Dim> second = Mat<Dim>::Zero();
-        for (int k = 0; k < n; ++k) {
-            const Vec<Dim> r = support[k].d - xb;
-            second += support[k].mw * r * r.transpose();
-        }
-        slot.support = support;
-        slot.n_support = n;
-        slot.volume = volume;
-        slot.gradient = gradient;
-        slot.m = m;
-        slot.xb = xb;
-        slot.rotates = invert_inertia(second, m, h, slot.Y);
-        support += n;
+        support_[k].resize(n_candidates);
+    });
+    grain_slots_.assign(windows_.size() + 1, 0);
+    for (const int s : slot_site_) ++grain_slots_[sites_[s].grain + 1];
+    std::partial_sum(grain_slots_.begin(), grain_slots_.end(), grain_slots_.begin());
+    slot_of_grain_.resize(n_slots);
+    std::vector<int> next(grain_slots_.begin(), grain_slots_.end() - 1);
+    for (std::size_t s = 0; s < n_slots; ++s)
+        slot_of_grain_[next[sites_[slot_site_[s]].grain]++] = static_cast<int>(s);
+}
+
+template <int Dim>
+void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene, int page) {
+    Support<Dim>* support = support_[page].data();
+    for (int s = page_slots_[page]; s < page_slots_[page + 1]; ++s) {
+        fill_slot(scene, sites_[slot_site_[s]], slots_[s], support);
+        support += slots_[s].n_support;
     }
+    for (int a = page_nodes_[page]; a < page_nodes_[page + 1]; ++a)
+        std::sort(slot_order_.begin() + node_slots_[a], slot_order_.begin() + node_slots_[a + 1],
+                  [&](int i, int j) {
+                      const Vec<Dim>&a = slots_[i].xb, &b = slots_[j].xb;
+                      return lower_first<Dim>(a, b) || (i < j && !lower_first<Dim>(b, a));
+                  });
+}
+
+template <int Dim>
+void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene) {
+    parallel::for_each(pages_.size(), [&](std::size_t page) { fill(scene, static_cast<int>(page)); });
+}
+
+template <int Dim>
+void ContactNodes<Dim>::fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
+                                  Support<Dim>* support) const {
+    const double h = grid_.h();
+    const Grain<Dim>& grain = scene.grains[site.grain];
+    const SurfacePoint<Dim>* const surface = grain.shape->surface.data();
+    const Candidate* const candidate = candidates_[site.grain].data() + site.candidate;
+    const Vec<Dim> x_node = grid_.node_position(site.index);
+    const Vec<Dim> index = site.index.template cast<double>();
+    int n = 0;
+    double volume = 0.0, m = 0.0, away = furthest_candidate - 1.0;
+    Vec<Dim> gradient = Vec<Dim>::Zero(), xb = Vec<Dim>::Zero();
+    for (int k = 0; k < site.n_candidates; ++k) {
+        const int on_surface = candidate[k] < 0 ? -1 - candidate[k] : -1;
+        const int p = grain.first + (on_surface >= 0 ? surface[on_surface].node : candidate[k]);
+        const Vec<Dim> t = grid_.in_cells(scene.x[p]) - index;
+        const double distance = t.cwiseAbs().maxCoeff();
+        if (on_surface >= 0) away = std::min(away, std::max(distance - 1.0, 0.0));
+        if (distance >= furthest_candidate) continue;
+        const double V = scene.volume[p];
+        gradient -= V / h * quadratic_gradient<Dim>(t);  // by the node: minus by the point
+        if (t.minCoeff() < -1.0 || t.maxCoeff() >= 1.0) continue;
+        double N = 1.0;
+        for (int a = 0; a < Dim; ++a) N *= 1.0 - std::abs(t[a]);
+        const double w = options_.nodal ? N : (on_surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
+        const Vec<Dim> d = scene.x[p] - x_node;
+        const double mw = scene.mass[p] * w;
+        support[n++] = {p, on_surface, N, w, mw, d};
+        volume += N * V;
+        m += mw;
+        xb += mw * d;
+    }
+    if (m > 0.0) xb /= m;
+    Mat<Dim> second = Mat<Dim>::Zero();
+    for (int k = 0; k < n; ++k) {
+        const Vec<Dim> r = support[k].d - xb;
+        second += support[k].mw * r * r.transpose();
+    }
+    slot.grain = site.grain;
+    slot.index = site.index;
+    slot.support = support;
+    slot.n_support = n;
+    slot.volume = volume;
+    slot.away = away;
+    slot.gradient = gradient;
+    slot.m = m;
+    slot.xb = xb;
+    slot.rotates = options_.rotation && invert_inertia(second, m, h, slot.Y);
 }
 
 template class ContactNodes<2>;

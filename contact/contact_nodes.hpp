@@ -1,59 +1,31 @@
 // Grid nodes where something can touch, and what each grain has there.
 //
 // A node is a contact node if surface particles of two grains, or of one grain near a wall, have it in the
-// support of their linear functions. Each grain at a contact node owns a slot: the particles around the
-// node, their mass and inertia. Memory follows slots: nothing is stored per grain and node.
+// support of their linear functions. A grain at a contact node is a site: which particles may come near. Of
+// the sites only those of nodes that are awake own a slot: the particles around the node now, their mass and
+// inertia. Memory follows sites: nothing is stored per grain and node.
 //
-// Finding the nodes takes longer than filling their slots, so they are found with a skin to spare and kept
-// until a particle or a wall has moved by the skin; and of those found, a contact rule may put aside
-// the ones whose surfaces are further apart than two skins can close (keep_only). Neither changes a result:
-// what a slot holds is computed from the positions of each step, and a node that was put aside has no
-// contact before the next search.
+//     search   finds nodes and sites with a skin to spare; they serve until something has moved by the skin
+//     choose   asks the contact rule for the free path of every node: how far bodies may move before they
+//              can meet there. A node sleeps until they have gone that far
+//     fill     slots of the nodes that are awake, from the positions of each step
+//
+// None of it changes a result: what a slot holds is computed from the positions of each step, and a node that
+// sleeps has no contact.
+//
+// Nodes are kept page by page (node_pages.hpp), pages by colour: pages of one colour share no particle, and
+// what belongs to the nodes of a page lies together in memory.
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <limits>
 
 #include "contact/contact.hpp"
+#include "contact/slot.hpp"
 #include "grid/node_pages.hpp"
-#include "grid/shape_functions.hpp"
+#include "grid/parallel.hpp"
 
 namespace quern {
-
-/// One particle in the support of a node.
-template <int Dim>
-struct Support {
-    int particle;
-    int surface;  ///< index into Shape::surface, or -1
-    double N;     ///< linear shape function
-    double w;     ///< weight of the slot: N, or N^2 at the surface and q N^2 inside
-    double mw;    ///< m_p w_p [kg]
-    Vec<Dim> d;   ///< x_p - x_a [m]
-};
-
-/// One grain at one contact node.
-template <int Dim>
-struct Slot {
-    int grain;
-    int node;               ///< contact node
-    IntVec<Dim> index;      ///< node, not wrapped: where the grain sees it
-    std::size_t candidate;  ///< first of the particles that may come near before the next search
-    int n_candidates;
-    const Support<Dim>* support;
-    int n_support;
-    double m;     ///< sum m_p w_p [kg]
-    Vec<Dim> xb;  ///< sum m_p w_p d_p / m, from the node [m]
-    Eigen::Matrix<double, n_spin<Dim>, n_spin<Dim>>
-        Y;              ///< inverse of sum m_p w_p (|r|^2 1 - r r^T); 0: degenerate
-    bool rotates;       ///< Y is usable
-    double volume;      ///< sum N_p V_p
-    Vec<Dim> gradient;  ///< sum V_p grad_a B(x_a - x_p), quadratic B-spline: points into the grain
-};
-
-/// A particle that a slot may need.
-struct Candidate {
-    int particle, surface;
-};
 
 /// Options of the search, fixed for a run.
 struct ContactNodeOptions {
@@ -62,6 +34,7 @@ struct ContactNodeOptions {
     double wall_reach = 0.75;      ///< nodes nearer to a wall than this have a slot [h]
     bool nodal = false;            ///< w = N: slots carry nodal momentum (flip coupling, seed rule)
     double interior_weight = 1.0;  ///< q, unless nodal
+    bool rotation = true;          ///< slots turn
     double skin = 0.0;             ///< a search lasts until something has moved this far [h]
 };
 
@@ -71,28 +44,48 @@ class ContactNodes {
     ContactNodes(const CartesianGrid<Dim>& grid, const ContactNodeOptions& options)
         : grid_(grid), options_(options), marks_(grid, 0) {}
 
-    /// Finds contact nodes, unless those of an earlier search still serve, and fills slots for the positions
-    /// in `scene`. Positions must be inside the grid.
-    void find(const ContactScene<Dim>& scene);
-    /// Whether the last `find` searched: then all nodes are there, and `keep_only` may put some aside.
+    /// Finds nodes and sites, unless those of an earlier search still serve. `ahead` [m]: how far anything
+    /// would go in this step without contact. Positions must be inside the grid.
+    void find(const ContactScene<Dim>& scene, double ahead);
+    /// Whether the last `find` searched.
     bool searched() const { return searched_; }
-    /// Forgets nodes until the next search. `wanted` [n_nodes].
-    void keep_only(const std::vector<std::uint8_t>& wanted);
-    double skin() const { return options_.skin; }
+    bool may_sleep() const { return options_.skin > 0.0; }
+    /// Whether nodes may have to wake: then `choose` comes before `fill`.
+    bool chooses() const { return searched_ || travelled_ >= choose_at_; }
+    /// Decides which nodes are awake. free_path(std::span<const Slot>) [h] is asked in parallel, for the
+    /// slots of one node.
+    template <class FreePath>
+    void choose(const ContactScene<Dim>& scene, FreePath&& free_path);
+    /// All nodes are awake.
+    void choose_all();
+    /// Fills slots for the positions in `scene`: of one page, or of all.
+    void fill(const ContactScene<Dim>& scene, int page);
+    void fill(const ContactScene<Dim>& scene);
 
     const CartesianGrid<Dim>& grid() const { return grid_; }
-    std::vector<Slot<Dim>>& slots() { return slots_; }
     const std::vector<Slot<Dim>>& slots() const { return slots_; }
-    int n_nodes() const { return n_nodes_; }
 
+    /// Nodes that are awake.
+    int n_nodes() const { return static_cast<int>(node_slots_.size()) - 1; }
     /// Slots of a node, ordered by where their mass is, not by the number of the grain.
     std::span<const int> slots_of(int node) const {
-        return {node_slots_.data() + node_begin_[node], node_slots_.data() + node_begin_[node + 1]};
+        return {slot_order_.data() + node_slots_[node], slot_order_.data() + node_slots_[node + 1]};
     }
-    /// Slots of a grain are [first, last).
-    std::pair<int, int> slots_of_grain(int grain) const {
-        return {grain_slots_[grain], grain_slots_[grain + 1]};
+    /// Slots of a grain.
+    std::span<const int> slots_of_grain(int grain) const {
+        return {slot_of_grain_.data() + grain_slots_[grain], slot_of_grain_.data() + grain_slots_[grain + 1]};
     }
+    bool has_sites(int grain) const { return grain_sites_[grain] < grain_sites_[grain + 1]; }
+
+    static constexpr int n_colours = NodePages<Dim, std::int32_t>::n_colours;
+    int n_pages() const { return static_cast<int>(pages_.size()); }
+    /// Pages of a colour are [first, last).
+    std::pair<int, int> pages_of_colour(int colour) const {
+        return {colour_pages_[colour], colour_pages_[colour + 1]};
+    }
+    /// Nodes of a page that are awake are [first, last).
+    std::pair<int, int> nodes_of_page(int page) const { return {page_nodes_[page], page_nodes_[page + 1]}; }
+    std::pair<int, int> slots_of_page(int page) const { return {page_slots_[page], page_slots_[page + 1]}; }
 
   private:
     struct Window {  ///< box of nodes around a grain
@@ -109,21 +102,37 @@ class ContactNodes {
         }
         int n() const { return size.prod(); }
     };
+    struct Site {
+        int grain;
+        int node;           ///< contact node, asleep or awake
+        IntVec<Dim> index;  ///< node, not wrapped: where the grain sees it
+        int candidate;      ///< first of the particles of the grain that may come near before the next search
+        int n_candidates;
+    };
+    /// A particle of a grain: its number there, or -1 - its number on the surface.
+    using Candidate = std::int32_t;
+    struct Page {
+        std::size_t place;  ///< in the grid
+        int number;         ///< in marks_
+        int colour;
+    };
     struct Scratch {  ///< of one thread
         std::vector<int> window;
         std::vector<std::uint8_t> near_cell;
-        std::vector<std::pair<int, Candidate>> near;  ///< slot of the grain, particle
+        std::vector<std::pair<int, Candidate>> near;  ///< site of the grain, particle
+        std::vector<Slot<Dim>> slots;
+        std::vector<Support<Dim>> support;
     };
 
-    bool moved(const ContactScene<Dim>& scene) const;
     void search(const ContactScene<Dim>& scene);
     void mark_touched(const ContactScene<Dim>& scene);
-    void select(const ContactScene<Dim>& scene);
-    void number_nodes();
-    void index_nodes();
-    void order_slots();
+    void make_pages();
+    void number_nodes(const ContactScene<Dim>& scene);
+    void make_sites();
     void list_candidates(const ContactScene<Dim>& scene, int grain, Scratch& scratch);
-    void fill_slots(const ContactScene<Dim>& scene, int grain);
+    void wake();
+    void fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
+                   Support<Dim>* support) const;
     IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
         IntVec<Dim> w;
         for (int a = 0; a < Dim; ++a) w[a] = grid_.wrapped(a, node[a]);
@@ -133,20 +142,62 @@ class ContactNodes {
 
     CartesianGrid<Dim> grid_;
     ContactNodeOptions options_;
-    NodePages<Dim, std::int32_t> marks_;  ///< number of grains at a node; later -1 - contact node
 
+    // Of the last search.
+    NodePages<Dim, std::int32_t> marks_;  ///< number of grains at a node; then 1 + contact node, or 0
+    std::vector<Page> pages_;
+    std::vector<int> colour_pages_;
     std::vector<Window> windows_;                     ///< [n_grains]
     std::vector<std::vector<int>> touched_;           ///< [n_grains] nodes as local window index, ascending
-    std::vector<int> n_selected_;                     ///< [n_grains] of touched_, moved to its front
-    std::vector<std::vector<Candidate>> candidates_;  ///< [n_grains] slot after slot, ascending
-    std::vector<std::vector<Support<Dim>>> support_;  ///< [n_grains] slot after slot
-    std::vector<int> grain_slots_, node_begin_, node_slots_, fill_;
-    int n_nodes_ = 0;
+    std::vector<Site> sites_;                         ///< grain after grain
+    std::vector<int> grain_sites_;                    ///< [n_grains + 1] into sites_
+    std::vector<std::vector<Candidate>> candidates_;  ///< [n_grains] site after site, ascending
+    std::vector<int> found_begin_, found_sites_;      ///< sites of each node found
+    std::vector<int> page_found_;                     ///< [n_pages + 1] nodes found
     bool searched_ = false;
-    std::vector<Vec<Dim>> x_searched_;     ///< [n] positions at the last search
-    std::vector<Vec<Dim>> wall_searched_;  ///< [n_walls] points of the walls then
-    std::vector<Slot<Dim>> slots_;
+    double travelled_ = 0.0;                    ///< by the end of this step [m]
+    double search_at_ = 0.0, choose_at_ = 0.0;  ///< of `travelled` [m]
+    double path_between_choices_ = 0.0;         ///< [m]
+
+    // Of the last choice.
+    std::vector<double> wake_at_;                               ///< [n_found] of `travelled` [m]
+    std::vector<std::uint8_t> awake_;                           ///< [n_found]
+    std::vector<int> page_nodes_;                               ///< [n_pages + 1] into nodes that are awake
+    std::vector<int> page_slots_;                               ///< [n_pages + 1] into slots_
+    std::vector<int> node_slots_, slot_order_;                  ///< slots of each node that is awake
+    std::vector<int> slot_site_, grain_slots_, slot_of_grain_;  ///< site of a slot, slots of a grain
+
+    std::vector<Slot<Dim>> slots_;                    ///< node after node
+    std::vector<std::vector<Support<Dim>>> support_;  ///< [n_pages] slot after slot
     std::vector<Scratch> scratch_;
 };
+
+template <int Dim>
+template <class FreePath>
+void ContactNodes<Dim>::choose(const ContactScene<Dim>& scene, FreePath&& free_path) {
+    const double path = path_between_choices_;
+    parallel::for_each(pages_.size(), [&](std::size_t page) {
+        Scratch& scratch = scratch_[static_cast<std::size_t>(parallel::thread_id())];
+        for (int i = page_found_[page]; i < page_found_[page + 1]; ++i) {
+            awake_[i] = wake_at_[i] <= travelled_ + path;
+            if (!awake_[i]) continue;
+            const std::span sites(found_sites_.data() + found_begin_[i],
+                                  found_sites_.data() + found_begin_[i + 1]);
+            std::size_t n = 0;
+            for (const int s : sites) n += static_cast<std::size_t>(sites_[s].n_candidates);
+            scratch.slots.resize(sites.size());
+            scratch.support.resize(std::max(scratch.support.size(), n));
+            Support<Dim>* support = scratch.support.data();
+            for (std::size_t k = 0; k < sites.size(); ++k) {
+                fill_slot(scene, sites_[sites[k]], scratch.slots[k], support);
+                support += scratch.slots[k].n_support;
+            }
+            wake_at_[i] = travelled_ + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
+            awake_[i] = wake_at_[i] <= travelled_ + path;
+        }
+    });
+    choose_at_ = travelled_ + path;
+    wake();
+}
 
 }  // namespace quern

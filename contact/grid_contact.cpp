@@ -16,6 +16,7 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     nodes.interior_weight = options.interior_weight;
     // Only where an impulse needs surfaces that meet can nodes whose surfaces are apart be left out.
     const bool meets = options.rule == GridRule::pair && options.gap_test && !nodes.all_nodes;
+    nodes.rotation = options.rotation;
     nodes.skin = meets ? options.skin : 0.0;
     return nodes;
 }
@@ -36,8 +37,14 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     report_.grain_impulse.assign(scene.grains.size(), Vec<Dim>::Zero());
     report_.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
     report_.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
-    nodes_.find(scene);
+    nodes_.find(scene, trial.dt * trial.largest_speed);
     report_.searched = nodes_.searched();
+    if (options_.rule == GridRule::pair) {
+        pair_.prepare(nodes_, scene, trial);
+    } else {
+        nodes_.choose_all();
+        nodes_.fill(scene);
+    }
     if (options_.rule == GridRule::pair && options_.coupling == GridCoupling::impulse)
         pair_.solve_particles(nodes_, scene, trial, report_);
     else
@@ -69,7 +76,7 @@ void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const Cont
     to_slots(trial.v, nodal_trial_);
     nodal_ = nodal_trial_;
     if (options_.rule == GridRule::pair)
-        pair_.solve_nodal(nodes_, scene, trial.dt, nodal_, nodal_before_, report_);
+        pair_.solve_nodal(nodes_, scene, nodal_, nodal_before_, report_);
     else
         apply_seed_rule<Dim>(nodes_, scene, nodal_, nodal_before_, report_);
     const bool flip = options_.coupling == GridCoupling::flip;
@@ -81,8 +88,7 @@ void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const Cont
                 trial.v[p] = trial.v_before[p];
                 trial.drift[p].setZero();
             }
-        const auto [first, last] = nodes_.slots_of_grain(static_cast<int>(g));
-        for (int s = first; s < last; ++s) {
+        for (const int s : nodes_.slots_of_grain(static_cast<int>(g))) {
             const Slot<Dim>& slot = nodes_.slots()[s];
             const Vec<Dim> dv = nodal_[s] - (flip ? nodal_before_[s] : nodal_trial_[s]);
             for (int k = 0; k < slot.n_support; ++k) {

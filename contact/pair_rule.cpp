@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "contact/slot_field.hpp"
@@ -11,7 +12,7 @@ namespace quern {
 
 namespace {
 
-constexpr std::size_t serial_below = 64;  ///< contact nodes of one colour
+constexpr std::size_t serial_below = 64;  ///< rows of one colour
 /// No contact makes a grain approach another this many times faster than anything moved before.
 constexpr double faster_than_fastest = 10.0;
 constexpr double wall_in_sight = 2.0;  ///< a wall further from a node has no tile there [h]
@@ -27,57 +28,28 @@ double tangential(const Mat<3>& W, const Eigen::Matrix<double, 3, 2>& T) {
     return mean + std::sqrt(half * half + off * off);
 }
 
-template <int Dim>
-struct Work {
-    double normal = 0.0, friction = 0.0, wall = 0.0;
-    Work& operator+=(const Work& other) {
-        normal += other.normal;
-        friction += other.friction;
-        wall += other.wall;
-        return *this;
-    }
-};
-
-/// Of particles and walls [m/s].
-template <int Dim>
-double largest_speed(const ContactScene<Dim>& scene, std::span<Vec<Dim>> v) {
-    struct Largest {
-        double square = 0.0;
-        Largest& operator+=(const Largest& other) {
-            square = std::max(square, other.square);
-            return *this;
-        }
-    };
-    const double square =
-        parallel::sum(v.size(), Largest{}, [&](std::size_t p) { return Largest{v[p].squaredNorm()}; }).square;
-    double wall = 0.0;
-    for (const Wall<Dim>& w : scene.walls) wall = std::max(wall, w.velocity.norm());
-    return std::sqrt(square) + wall;
-}
-
 }  // namespace
 
 template <int Dim>
-void PairRule<Dim>::add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b,
-                            int wall, std::vector<PairRow<Dim>>& rows) const {
+void PairRule<Dim>::add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a,
+                            int b, int wall, std::vector<PairRow<Dim>>& rows) const {
     const double h = nodes.grid().h();
     const Slot<Dim>& A = nodes.slots()[a];
     const Grain<Dim>& grain_a = scene.grains[A.grain];
-    const TileSide<Dim> side_a{&A, &grain_a, &rotation_[A.grain]};
     PairRow<Dim> row;
     row.a = a;
     std::optional<Tile<Dim>> tile;
     if (wall >= 0) {
         const Wall<Dim>& plane = scene.walls[wall];
-        tile = make_wall_tile<Dim>(side_a, plane, plane.distance(nodes.grid().node_position(A.index)), h,
-                                   options_);
+        tile = make_wall_tile<Dim>(side(A, scene), plane, plane.distance(nodes.grid().node_position(A.index)),
+                                   h, options_);
         row.wall = wall;
         row.u_wall = plane.velocity;
         row.mu = plane.friction;
     } else {
         const Slot<Dim>& B = nodes.slots()[b];
         const Grain<Dim>& grain_b = scene.grains[B.grain];
-        tile = make_tile<Dim>(side_a, {&B, &grain_b, &rotation_[B.grain]}, h, options_);
+        tile = make_tile<Dim>(side(A, scene), side(B, scene), h, options_);
         row.b = b;
         row.mu = (*scene.friction)(grain_a.material, grain_b.material);
     }
@@ -108,73 +80,78 @@ void PairRule<Dim>::add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
     rows.push_back(row);
 }
 
+/// How far [h] bodies may move before two of them, or one and a wall, can meet at a node.
 template <int Dim>
-bool PairRule<Dim>::may_touch(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
-                              int node) const {
-    const double h = nodes.grid().h(), skin = nodes.skin();
-    const std::span<const int> slots = nodes.slots_of(node);
-    const auto side = [&](int s) {
-        const Slot<Dim>& slot = nodes.slots()[s];
-        return TileSide<Dim>{&slot, &scene.grains[slot.grain], &rotation_[slot.grain]};
-    };
+double PairRule<Dim>::free_path(std::span<const Slot<Dim>> slots, const ContactScene<Dim>& scene,
+                                const CartesianGrid<Dim>& grid) const {
+    const double h = grid.h();
+    double path = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < slots.size(); ++k) {
+        const TileSide<Dim> A = side(slots[k], scene);
         for (std::size_t l = k + 1; l < slots.size(); ++l)
-            if (!stay_apart(side(slots[k]), side(slots[l]), h, skin, options_)) return true;
-        const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
+            path = std::min(path, quern::free_path(A, side(slots[l], scene), h, options_));
+        const Vec<Dim> x = grid.node_position(slots[k].index);
         for (const Wall<Dim>& wall : scene.walls)
-            if (std::abs(wall.distance(x)) <= wall_in_sight * h &&
-                !stay_apart(side(slots[k]), wall, wall.distance(x), h, skin, options_))
-                return true;
+            if (const double distance = wall.distance(x); std::abs(distance) <= wall_in_sight * h)
+                path = std::min(path, quern::free_path(A, wall, distance, h, options_));
     }
-    return false;
+    return path;
+}
+
+/// Rotations of the grains with slots, and which nodes are awake.
+template <int Dim>
+void PairRule<Dim>::choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene) {
+    const bool chooses = nodes.chooses();
+    rotation_.resize(scene.grains.size());
+    parallel::for_each(scene.grains.size(), [&](std::size_t g) {
+        const int grain = static_cast<int>(g);
+        if (chooses ? nodes.has_sites(grain) : !nodes.slots_of_grain(grain).empty())
+            rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
+    });
+    if (!chooses) return;
+    if (nodes.may_sleep())
+        nodes.choose(scene,
+                     [&](std::span<const Slot<Dim>> slots) { return free_path(slots, scene, nodes.grid()); });
+    else
+        nodes.choose_all();
 }
 
 template <int Dim>
-void PairRule<Dim>::make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt) {
-    rotation_.resize(scene.grains.size());
-    parallel::for_each(scene.grains.size(), [&](std::size_t g) {
-        const auto [first, last] = nodes.slots_of_grain(static_cast<int>(g));
-        for (int s = first; s < last && options_.coupling == GridCoupling::impulse && !options_.rotation; ++s)
-            nodes.slots()[s].rotates = false;
-        if (first < last) rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
-    });
-    if (nodes.searched() && nodes.skin() > 0.0) {
-        wanted_.resize(static_cast<std::size_t>(nodes.n_nodes()));
-        parallel::for_each(wanted_.size(),
-                           [&](std::size_t i) { wanted_[i] = may_touch(nodes, scene, static_cast<int>(i)); });
-        nodes.keep_only(wanted_);
+void PairRule<Dim>::make_rows(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
+                              int page) {
+    std::vector<PairRow<Dim>>& rows = rows_[page];
+    rows.clear();
+    const auto [first, last] = nodes.nodes_of_page(page);
+    for (int node = first; node < last; ++node) {
+        const std::span<const int> slots = nodes.slots_of(node);
+        for (std::size_t k = 0; k < slots.size(); ++k) {
+            for (std::size_t l = k + 1; l < slots.size(); ++l)
+                add_row(nodes, scene, dt, slots[k], slots[l], -1, rows);
+            const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
+            for (std::size_t w = 0; w < scene.walls.size(); ++w)
+                if (std::abs(scene.walls[w].distance(x)) <= wall_in_sight * nodes.grid().h())
+                    add_row(nodes, scene, dt, slots[k], -1, static_cast<int>(w), rows);
+        }
     }
-    const std::size_t n_nodes = static_cast<std::size_t>(nodes.n_nodes());
-    if (rows_.size() < n_nodes) rows_.resize(n_nodes);
-    parallel::for_each(
-        n_nodes,
-        [&](std::size_t i) {
-            std::vector<PairRow<Dim>>& rows = rows_[i];
-            rows.clear();
-            const std::span<const int> slots = nodes.slots_of(static_cast<int>(i));
-            for (std::size_t k = 0; k < slots.size(); ++k) {
-                for (std::size_t l = k + 1; l < slots.size(); ++l)
-                    add_row(nodes, scene, dt, slots[k], slots[l], -1, rows);
-                const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
-                for (std::size_t w = 0; w < scene.walls.size(); ++w)
-                    if (std::abs(scene.walls[w].distance(x)) <= wall_in_sight * nodes.grid().h())
-                        add_row(nodes, scene, dt, slots[k], -1, static_cast<int>(w), rows);
-            }
-        },
-        serial_below);
-    colours_.resize(CartesianGrid<Dim>::n_colours);
-    for (std::vector<int>& colour : colours_) colour.clear();
-    for (std::size_t i = 0; i < n_nodes; ++i)
-        if (!rows_[i].empty())
-            colours_[nodes.grid().colour(nodes.slots()[rows_[i].front().a].index)].push_back(
-                static_cast<int>(i));
-    change_.resize(n_nodes);
-    total_.resize(n_nodes);
+}
+
+template <int Dim>
+void PairRule<Dim>::prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                            const ContactTrial<Dim>& trial) {
+    reachable_speed_ = faster_than_fastest * trial.largest_speed;
+    choose_nodes(nodes, scene);
+    const std::size_t n_pages = static_cast<std::size_t>(nodes.n_pages());
+    if (rows_.size() < n_pages) rows_.resize(n_pages);
+    page_reports_.resize(n_pages);
+    parallel::for_each(n_pages, [&](std::size_t page) {
+        nodes.fill(scene, static_cast<int>(page));
+        make_rows(nodes, scene, trial.dt, static_cast<int>(page));
+    });
 }
 
 template <int Dim>
 template <class Field>
-void PairRule<Dim>::sweep(ContactNodes<Dim>& nodes, Field& field, ContactReport<Dim>& report) {
+void PairRule<Dim>::sweep(const ContactNodes<Dim>& nodes, Field& field, ContactReport<Dim>& report) {
     const auto update = [&](PairRow<Dim>& row, double& change) {
         const Slot<Dim>& A = nodes.slots()[row.a];
         const Slot<Dim>* B = row.b >= 0 ? &nodes.slots()[row.b] : nullptr;
@@ -194,97 +171,114 @@ void PairRule<Dim>::sweep(ContactNodes<Dim>& nodes, Field& field, ContactReport<
         field.add_impulse(A, row.r_a, -J);
         if (B) field.add_impulse(*B, row.r_b, J);
     };
-    const auto visit = [&](int node, bool forward) {
+    const auto visit = [&](std::size_t page, bool forward) {
         double change = 0.0, total = 0.0;
-        std::vector<PairRow<Dim>>& rows = rows_[node];
+        std::vector<PairRow<Dim>>& rows = rows_[page];
         if (forward)
             for (auto row = rows.begin(); row != rows.end(); ++row) update(*row, change);
         else
             for (auto row = rows.rbegin(); row != rows.rend(); ++row) update(*row, change);
         for (const PairRow<Dim>& row : rows) total += row.J_n;
-        change_[node] = change;
-        total_[node] = total;
+        page_reports_[page].change = change;
+        page_reports_[page].total = total;
     };
+    constexpr int n_colours = ContactNodes<Dim>::n_colours;
+    std::array<std::size_t, n_colours> n_rows{};
+    for (int c = 0; c < n_colours; ++c) {
+        const auto [first, last] = nodes.pages_of_colour(c);
+        for (int page = first; page < last; ++page) n_rows[c] += rows_[page].size();
+    }
     report.converged = false;
     for (report.sweeps = 0; report.sweeps < options_.max_sweeps && !report.converged; ++report.sweeps) {
         const bool forward = report.sweeps % 2 == 0;
-        for (int c = 0; c < CartesianGrid<Dim>::n_colours; ++c) {
-            const std::vector<int>& colour = colours_[forward ? c : CartesianGrid<Dim>::n_colours - 1 - c];
+        for (int k = 0; k < n_colours; ++k) {
+            const int colour = forward ? k : n_colours - 1 - k;
+            if (n_rows[colour] == 0) continue;
+            const auto [first, last] = nodes.pages_of_colour(colour);
+            const std::size_t n_pages = static_cast<std::size_t>(last - first);
             parallel::for_each(
-                colour.size(), [&](std::size_t i) { visit(colour[i], forward); }, serial_below);
+                n_pages, [&](std::size_t i) { visit(static_cast<std::size_t>(first) + i, forward); },
+                n_rows[colour] < serial_below ? n_pages + 1 : 2);
         }
         double change = 0.0, total = 0.0;
-        for (const std::vector<int>& colour : colours_)
-            for (const int node : colour) {
-                change += change_[node];
-                total += total_[node];
-            }
+        for (std::size_t page = 0; page < page_reports_.size(); ++page) {
+            if (rows_[page].empty()) continue;
+            change += page_reports_[page].change;
+            total += page_reports_[page].total;
+        }
         report.converged = change <= options_.tolerance * total;
     }
 }
 
 template <int Dim>
 template <class Before, class After>
-void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const Before& before, const After& after,
-                             ContactReport<Dim>& report) const {
-    const std::size_t n_nodes = static_cast<std::size_t>(nodes.n_nodes());
-    const auto work = parallel::sum(n_nodes, Work<Dim>{}, [&](std::size_t i) {
-        Work<Dim> sum;
-        for (const PairRow<Dim>& row : rows_[i]) {
+void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                             const Before& before, const After& after, ContactReport<Dim>& report) {
+    slot_impulse_.resize(nodes.slots().size());
+    parallel::for_each(page_reports_.size(), [&](std::size_t page) {
+        const auto [first, last] = nodes.slots_of_page(static_cast<int>(page));
+        std::fill(slot_impulse_.begin() + first, slot_impulse_.begin() + last, Vec<Dim>::Zero());
+        PageReport& sum = page_reports_[page];
+        sum.normal_work = sum.friction_work = sum.wall_work = 0.0;
+        sum.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
+        sum.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
+        for (const PairRow<Dim>& row : rows_[page]) {
             if (row.J_n == 0.0) continue;
             const Slot<Dim>& A = nodes.slots()[row.a];
+            const Vec<Dim> J = row.J_n * row.n + row.J_t;
             Vec<Dim> u = 0.5 * (before.velocity(A, row.r_a) + after.velocity(A, row.r_a));
+            slot_impulse_[row.a] -= J;
             if (row.b >= 0) {
                 const Slot<Dim>& B = nodes.slots()[row.b];
                 u -= 0.5 * (before.velocity(B, row.r_b) + after.velocity(B, row.r_b));
+                slot_impulse_[row.b] += J;
             } else {
                 u -= row.u_wall;
-                sum.wall -= (row.J_n * row.n + row.J_t).dot(row.u_wall);
-            }
-            sum.normal -= row.J_n * row.n.dot(u);
-            sum.friction -= row.J_t.dot(u);
-        }
-        return sum;
-    });
-    report.normal_work += work.normal;
-    report.friction_work += work.friction;
-    report.wall_work += work.wall;
-    for (std::size_t i = 0; i < n_nodes; ++i)
-        for (const PairRow<Dim>& row : rows_[i]) {
-            ++report.n_contacts;
-            if (row.J_n == 0.0) continue;
-            const Vec<Dim> J = row.J_n * row.n + row.J_t;
-            const Slot<Dim>& A = nodes.slots()[row.a];
-            report.grain_impulse[A.grain] -= J;
-            if (row.b >= 0) {
-                report.grain_impulse[nodes.slots()[row.b].grain] += J;
-            } else {
-                report.wall_impulse[row.wall] += J;
-                report.wall_moment[row.wall] +=
+                sum.wall_work -= J.dot(row.u_wall);
+                sum.wall_impulse[row.wall] += J;
+                sum.wall_moment[row.wall] +=
                     moment(Vec<Dim>(nodes.grid().node_position(A.index) + row.point), J);
             }
+            sum.normal_work -= row.J_n * row.n.dot(u);
+            sum.friction_work -= row.J_t.dot(u);
         }
+    });
+    for (std::size_t page = 0; page < page_reports_.size(); ++page) {
+        const PageReport& sum = page_reports_[page];
+        report.normal_work += sum.normal_work;
+        report.friction_work += sum.friction_work;
+        report.wall_work += sum.wall_work;
+        report.n_contacts += static_cast<std::int64_t>(rows_[page].size());
+        for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+            report.wall_impulse[w] += sum.wall_impulse[w];
+            report.wall_moment[w] += sum.wall_moment[w];
+        }
+    }
+    parallel::for_each(
+        scene.grains.size(),
+        [&](std::size_t g) {
+            for (const int s : nodes.slots_of_grain(static_cast<int>(g)))
+                report.grain_impulse[g] += slot_impulse_[s];
+        },
+        serial_below);
 }
 
 template <int Dim>
-void PairRule<Dim>::solve_particles(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+void PairRule<Dim>::solve_particles(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                                     const ContactTrial<Dim>& trial, ContactReport<Dim>& report) {
-    reachable_speed_ = faster_than_fastest * largest_speed(scene, trial.v);
-    make_rows(nodes, scene, trial.dt);
     ParticleField<Dim> field{trial.v};
     sweep(nodes, field, report);
-    add_work(nodes, ParticleField<Dim, const Vec<Dim>>{trial.v_before}, field, report);
+    add_work(nodes, scene, ParticleField<Dim, const Vec<Dim>>{trial.v_before}, field, report);
 }
 
 template <int Dim>
-void PairRule<Dim>::solve_nodal(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
+void PairRule<Dim>::solve_nodal(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                                 std::vector<Vec<Dim>>& nodal, const std::vector<Vec<Dim>>& nodal_before,
                                 ContactReport<Dim>& report) {
-    reachable_speed_ = std::numeric_limits<double>::infinity();
-    make_rows(nodes, scene, dt);
     NodalField<Dim> field{nodal, nodes.slots().data()};
     sweep(nodes, field, report);
-    add_work(nodes, NodalField<Dim, const Vec<Dim>>{nodal_before, nodes.slots().data()}, field, report);
+    add_work(nodes, scene, NodalField<Dim, const Vec<Dim>>{nodal_before, nodes.slots().data()}, field,
+             report);
 }
 
 template class PairRule<2>;

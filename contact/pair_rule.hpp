@@ -49,32 +49,45 @@ class PairRule {
   public:
     explicit PairRule(const GridContactOptions& options) : options_(options) {}
 
+    /// Nodes, slots and rows of this step. Rows that no speed present can close are left out.
+    void prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
     /// Impulse coupling: solves on particle velocities `trial.v` in place. Flip coupling: on `nodal`, the
     /// velocities of the slots. Adds works and impulses to `report`.
-    void solve_particles(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+    void solve_particles(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                          const ContactTrial<Dim>& trial, ContactReport<Dim>& report);
-    void solve_nodal(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
+    void solve_nodal(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                      std::vector<Vec<Dim>>& nodal, const std::vector<Vec<Dim>>& nodal_before,
                      ContactReport<Dim>& report);
 
   private:
-    void make_rows(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt);
-    bool may_touch(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, int node) const;
-    void add_row(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b, int wall,
-                 std::vector<PairRow<Dim>>& rows) const;
+    struct PageReport {                    ///< of the rows of one page
+        double change = 0.0, total = 0.0;  ///< of one sweep
+        double normal_work = 0.0, friction_work = 0.0, wall_work = 0.0;
+        std::vector<Vec<Dim>> wall_impulse;
+        std::vector<Spin<Dim>> wall_moment;
+    };
+
+    void choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene);
+    double free_path(std::span<const Slot<Dim>> slots, const ContactScene<Dim>& scene,
+                     const CartesianGrid<Dim>& grid) const;
+    void make_rows(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int page);
+    void add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b,
+                 int wall, std::vector<PairRow<Dim>>& rows) const;
+    TileSide<Dim> side(const Slot<Dim>& slot, const ContactScene<Dim>& scene) const {
+        return {&slot, &scene.grains[slot.grain], &rotation_[slot.grain]};
+    }
     template <class Field>
-    void sweep(ContactNodes<Dim>& nodes, Field& field, ContactReport<Dim>& report);
+    void sweep(const ContactNodes<Dim>& nodes, Field& field, ContactReport<Dim>& report);
     template <class Before, class After>
-    void add_work(const ContactNodes<Dim>& nodes, const Before& before, const After& after,
-                  ContactReport<Dim>& report) const;
+    void add_work(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, const Before& before,
+                  const After& after, ContactReport<Dim>& report);
 
     GridContactOptions options_;
     double reachable_speed_ = 0.0;                 ///< of one slot against another in this step [m/s]
     std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of grains with slots
-    std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_nodes]
-    std::vector<std::vector<int>> colours_;        ///< nodes with rows, by colour
-    std::vector<double> change_, total_;           ///< [n_nodes] of one sweep
-    std::vector<std::uint8_t> wanted_;             ///< [n_nodes] of a search
+    std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_pages] node after node
+    std::vector<PageReport> page_reports_;         ///< [n_pages]
+    std::vector<Vec<Dim>> slot_impulse_;           ///< [n_slots] received [N s; 2D: N s/m]
 };
 
 }  // namespace quern

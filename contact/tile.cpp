@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace quern {
 
@@ -12,8 +13,13 @@ constexpr double flat_on_flat = 0.2;         ///< curvature [1/h] that centres t
 constexpr double flattest = 0.1;  ///< curvature [1/h] of a pair below which its closest point rocks
 constexpr double max_slope = 0.5;
 constexpr double max_interface_distance = 0.75;  ///< from the node [h]
-/// Two bodies that move by a skin each close two; the rest is for what the fit does not know.
-constexpr double far_apart = 4.0;
+constexpr double anywhere = std::numeric_limits<double>::infinity();
+constexpr double least_filling = 0.1;  ///< volume [cells] that a slot needs to have a surface
+/// The fit of a grain with corners jumps when particles of another face join it: by this much [h], or by any
+/// amount where the slot is filled less than this.
+constexpr double corner_jump = 0.25, trusted_filling = 0.35;
+/// Two bodies that move close a gap twice as fast as one; the rest is for what the fit does not know.
+constexpr double gap_of_path = 4.0;
 /// Least cosine between a particle's normal and that of the contact, for cornered grains: keeps the corners
 /// of a box (0.577), drops the next face of a hexagon (0.5).
 constexpr double corner_filter = 0.55;
@@ -139,11 +145,10 @@ Eigen::Matrix<double, 3, 2> tangents<3>(const Vec<3>& n) {
 
 namespace {
 
-/// Tile of two grains whose interface is not further than `reach` [h] from the node. `apart`: set if the
-/// surfaces are there, but it is.
+/// Tile of two grains whose interface is not further than `reach` [h] from the node.
 template <int Dim>
-std::optional<Tile<Dim>> tile_within(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, double reach,
-                                     const GridContactOptions& options, bool& apart) {
+std::optional<Tile<Dim>> tile_within(double reach, const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
+                                     const GridContactOptions& options) {
     Vec<Dim> n = B.slot->gradient - A.slot->gradient;
     const double length = n.norm();
     if (!(length > 0.0)) return std::nullopt;
@@ -157,10 +162,7 @@ std::optional<Tile<Dim>> tile_within(const TileSide<Dim>& A, const TileSide<Dim>
         if (!a || !b) return std::nullopt;
         typename Profile<Dim>::Tangential s;
         tile = closest_approach<Dim>(*a, *b, n, T, h, flattest, s);
-        if (std::abs(tile.point.dot(n)) > reach * h) {
-            apart = true;
-            return std::nullopt;
-        }
+        if (std::abs(tile.point.dot(n)) > reach * h) return std::nullopt;
         if (pass == 0 && options.tile) {
             typename Profile<Dim>::Tangential m = 0.5 * (a->c1 + b->c1) + (a->c2 + b->c2) * s;
             m = m.cwiseMax(-max_slope).cwiseMin(max_slope);
@@ -174,9 +176,8 @@ std::optional<Tile<Dim>> tile_within(const TileSide<Dim>& A, const TileSide<Dim>
 }
 
 template <int Dim>
-std::optional<Tile<Dim>> wall_tile_within(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
-                                          double h, double reach, const GridContactOptions& options,
-                                          bool& apart) {
+std::optional<Tile<Dim>> wall_tile_within(double reach, const TileSide<Dim>& A, const Wall<Dim>& wall,
+                                          double wall_offset, double h, const GridContactOptions& options) {
     const Vec<Dim> n = -wall.normal;
     const Eigen::Matrix<double, Dim, Dim - 1> T = tangents<Dim>(n);
     auto a = fit<Dim>(A, 1.0, n, T, h, options, std::nullopt);
@@ -186,18 +187,27 @@ std::optional<Tile<Dim>> wall_tile_within(const TileSide<Dim>& A, const Wall<Dim
     plane.c0 = wall_offset / h;
     typename Profile<Dim>::Tangential s;
     const Tile<Dim> tile = closest_approach<Dim>(*a, plane, n, T, h, 0.0, s);
-    if (std::abs(tile.point.dot(n)) > reach * h) {
-        apart = true;
-        return std::nullopt;
-    }
+    if (std::abs(tile.point.dot(n)) > reach * h) return std::nullopt;
     return tile;
 }
 
-/// Enough of a grain at a node to speak of its surface.
+/// Whether a grain fills this part of a cell at the node, or of the smaller of both grains.
 template <int Dim>
-bool is_filled(const TileSide<Dim>& side, double h, double other_volume) {
+bool fills(double part, const TileSide<Dim>& side, double h, double other_volume) {
     const double full = std::min({std::pow(h, static_cast<double>(Dim)), side.grain->volume, other_volume});
-    return side.slot->volume >= 0.1 * full;
+    return side.slot->volume >= part * full;
+}
+
+template <int Dim>
+double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, bool jumps, bool thin, double h) {
+    double path = away;
+    if (tile) {
+        const double jump = jumps ? corner_jump : 0.0;
+        const double gap = tile->gap / h - jump;
+        const double beyond = std::abs(tile->point.dot(tile->normal)) / h - max_interface_distance - jump;
+        path = jumps && thin ? 0.0 : std::max({gap / gap_of_path, beyond / 2.0, 0.0});
+    }
+    return path;
 }
 
 }  // namespace
@@ -205,44 +215,40 @@ bool is_filled(const TileSide<Dim>& side, double h, double other_volume) {
 template <int Dim>
 std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
                                    const GridContactOptions& options) {
-    if (!is_filled(A, h, B.grain->volume) || !is_filled(B, h, A.grain->volume)) return std::nullopt;
-    bool apart = false;
-    return tile_within(A, B, h, max_interface_distance, options, apart);
+    if (!fills(least_filling, A, h, B.grain->volume) || !fills(least_filling, B, h, A.grain->volume))
+        return std::nullopt;
+    return tile_within(max_interface_distance, A, B, h, options);
 }
 
 template <int Dim>
 std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
                                         double h, const GridContactOptions& options) {
-    if (!is_filled(A, h, A.grain->volume)) return std::nullopt;
-    bool apart = false;
-    return wall_tile_within(A, wall, wall_offset, h, max_interface_distance, options, apart);
+    if (!fills(least_filling, A, h, A.grain->volume)) return std::nullopt;
+    return wall_tile_within(max_interface_distance, A, wall, wall_offset, h, options);
 }
 
 template <int Dim>
-bool stay_apart(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, double skin,
-                const GridContactOptions& options) {
-    bool apart = false;
-    const auto tile = tile_within(A, B, h, max_interface_distance + 2.0 * skin, options, apart);
-    return apart || (tile && tile->gap > far_apart * skin * h);
+double free_path(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
+                 const GridContactOptions& options) {
+    const bool thin =
+        !fills(trusted_filling, A, h, B.grain->volume) || !fills(trusted_filling, B, h, A.grain->volume);
+    const bool jumps = A.grain->shape->cornered || B.grain->shape->cornered;
+    return path_to_meet(tile_within(anywhere, A, B, h, options), std::max(A.slot->away, B.slot->away), jumps,
+                        thin, h);
 }
 
 template <int Dim>
-bool stay_apart(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h, double skin,
-                const GridContactOptions& options) {
-    bool apart = false;
-    const auto tile =
-        wall_tile_within(A, wall, wall_offset, h, max_interface_distance + 2.0 * skin, options, apart);
-    return apart || (tile && tile->gap > far_apart * skin * h);
+double free_path(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h,
+                 const GridContactOptions& options) {
+    const bool thin = !fills(trusted_filling, A, h, A.grain->volume);
+    return path_to_meet(wall_tile_within(anywhere, A, wall, wall_offset, h, options), A.slot->away,
+                        A.grain->shape->cornered, thin, h);
 }
 
-template bool stay_apart<2>(const TileSide<2>&, const TileSide<2>&, double, double,
-                            const GridContactOptions&);
-template bool stay_apart<3>(const TileSide<3>&, const TileSide<3>&, double, double,
-                            const GridContactOptions&);
-template bool stay_apart<2>(const TileSide<2>&, const Wall<2>&, double, double, double,
-                            const GridContactOptions&);
-template bool stay_apart<3>(const TileSide<3>&, const Wall<3>&, double, double, double,
-                            const GridContactOptions&);
+template double free_path<2>(const TileSide<2>&, const TileSide<2>&, double, const GridContactOptions&);
+template double free_path<3>(const TileSide<3>&, const TileSide<3>&, double, const GridContactOptions&);
+template double free_path<2>(const TileSide<2>&, const Wall<2>&, double, double, const GridContactOptions&);
+template double free_path<3>(const TileSide<3>&, const Wall<3>&, double, double, const GridContactOptions&);
 template std::optional<Tile<2>> make_tile<2>(const TileSide<2>&, const TileSide<2>&, double,
                                              const GridContactOptions&);
 template std::optional<Tile<3>> make_tile<3>(const TileSide<3>&, const TileSide<3>&, double,

@@ -62,14 +62,13 @@ template <int Dim>
 std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
                                         double h, const GridContactOptions& options);
 
-/// Whether two surfaces near a node, or a surface and a wall, cannot meet there before one of them has moved
-/// by `skin` [h]: their gap g > 4 skin h, or their interface lies 0.75 h + 2 skin h from the node or further
-/// (g [m] as above). Each moves by a skin at most, so g > 2 skin h would do if the fits were exact.
+/// How far each of two bodies may move before their surfaces can meet near a node [h]: a quarter of the gap,
+/// or half of what the interface lies beyond 0.75 h from the node. Both may move, so half of the gap would do
+/// if the fits were exact. A surface that is not there yet comes with its nearest particle.
 template <int Dim>
-bool stay_apart(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, double skin,
-                const GridContactOptions& options);
+double free_path(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, const GridContactOptions& options);
 template <int Dim>
-bool stay_apart(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h, double skin,
-                const GridContactOptions& options);
+double free_path(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h,
+                 const GridContactOptions& options);
 
 }  // namespace quern

@@ -61,19 +61,13 @@ class CartesianGrid {
         const int r = i % n_cells_[axis];
         return r < 0 ? r + n_cells_[axis] : r;
     }
-
-    /// Colour of a node: two nodes of one colour share no cell. Two values an axis; three where a periodic
-    /// axis has an odd number of nodes.
-    int colour(const IntVec<Dim>& node) const {
-        int c = 0;
-        for (int a = Dim - 1; a >= 0; --a) {
-            const int i = wrapped(a, node[a]);
-            const bool seam = periodic_[a] && n_cells_[a] % 2 == 1 && i == n_cells_[a] - 1;
-            c = 3 * c + (seam ? 2 : i % 2);
-        }
-        return c;
+    /// A node with these wrapped indices.
+    IntVec<Dim> node(const IntVec<Dim>& wrapped) const {
+        IntVec<Dim> node = wrapped;
+        for (int a = 0; a < Dim; ++a)
+            if (!periodic_[a]) node[a] -= margin;
+        return node;
     }
-    static constexpr int n_colours = Dim == 2 ? 9 : 27;
 
   private:
     Vec<Dim> origin_;

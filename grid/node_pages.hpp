@@ -1,8 +1,11 @@
 // One value per grid node, stored only where something is: a directory of small pages.
 //
-// Memory follows the matter, not the box: a page of 16^2 or 8^3 nodes is made when first asked for.
+// Memory follows the matter, not the box: a page of 16^2 or 8^3 nodes is made when first asked for. Pages
+// have colours: nodes of two pages of one colour share no cell.
 #pragma once
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "grid/cartesian_grid.hpp"
@@ -20,6 +23,7 @@ class NodePages {
         std::size_t n = 1;
         for (int a = 0; a < Dim; ++a) {
             n_pages_[a] = (grid.n_nodes()[a] + side - 1) >> shift;
+            periodic_[a] = grid.periodic(a);
             n *= static_cast<std::size_t>(n_pages_[a]);
         }
         directory_.assign(n, -1);
@@ -29,8 +33,17 @@ class NodePages {
     void require(const IntVec<Dim>& wrapped) {
         std::int32_t& page = directory_[directory_index(wrapped)];
         if (page >= 0) return;
-        page = static_cast<std::int32_t>(values_.size() / page_size);
+        page = static_cast<std::int32_t>(first_.size());
+        IntVec<Dim> first;
+        for (int a = 0; a < Dim; ++a) first[a] = wrapped[a] >> shift << shift;
+        first_.push_back(first);
         values_.resize(values_.size() + page_size, empty_);
+    }
+    /// Forgets all pages.
+    void clear() {
+        for (const IntVec<Dim>& first : first_) directory_[directory_index(first)] = -1;
+        first_.clear();
+        values_.clear();
     }
 
     /// Value of a node whose page exists.
@@ -41,7 +54,39 @@ class NodePages {
         return values_[static_cast<std::size_t>(directory_[directory_index(wrapped)]) * page_size + offset];
     }
 
-    std::size_t n_pages() const { return values_.size() / page_size; }
+    /// Pages are numbered in the order in which they were made.
+    int n_pages() const { return static_cast<int>(first_.size()); }
+    /// Wrapped indices of the first node of a page.
+    const IntVec<Dim>& first(int page) const { return first_[page]; }
+    /// Wrapped indices of node i of a page; those of a page that is cut lie beyond the grid.
+    IntVec<Dim> node(int page, int i) const {
+        IntVec<Dim> node = first_[page];
+        for (int a = 0; a < Dim; ++a) node[a] += i >> (a * shift) & (side - 1);
+        return node;
+    }
+    /// Bit a: whether the index of node i of a page is odd on axis a. Nodes of one parity share no cell.
+    static int parity(int i) {
+        int bits = 0;
+        for (int a = 0; a < Dim; ++a) bits |= (i >> (a * shift) & 1) << a;
+        return bits;
+    }
+    std::span<T> values(int page) {
+        return {values_.data() + static_cast<std::size_t>(page) * page_size, page_size};
+    }
+    /// Where a page stands in the grid: pages in ascending order are independent of how they were made.
+    std::size_t place(int page) const { return directory_index(first_[page]); }
+
+    /// Two values an axis; three where a periodic axis has an odd number of pages.
+    int colour(int page) const {
+        int c = 0;
+        for (int a = Dim - 1; a >= 0; --a) {
+            const int i = first_[page][a] >> shift;
+            const bool seam = periodic_[a] && n_pages_[a] % 2 == 1 && i == n_pages_[a] - 1;
+            c = 3 * c + (seam ? 2 : i % 2);
+        }
+        return c;
+    }
+    static constexpr int n_colours = Dim == 2 ? 9 : 27;
 
   private:
     std::size_t directory_index(const IntVec<Dim>& wrapped) const {
@@ -53,7 +98,9 @@ class NodePages {
 
     T empty_;
     IntVec<Dim> n_pages_;
+    std::array<bool, Dim> periodic_;
     std::vector<std::int32_t> directory_;
+    std::vector<IntVec<Dim>> first_;
     std::vector<T> values_;
 };
 

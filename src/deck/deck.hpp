@@ -92,7 +92,7 @@ struct ContactDeck {
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
-    double skin = 0.1;        ///< nodes are searched anew when something has moved this far [cells]
+    double skin = 0.2;        ///< nodes are searched anew when something has moved this far [cells]
     bool tile = true;  ///< gap at the closest approach of two fitted profiles; false: from mean positions
     bool curvature = true;   ///< profiles know the reference curvature
     bool rotation = true;    ///< impulses act at one point: rotation term of the map

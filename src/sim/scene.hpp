@@ -76,6 +76,7 @@ struct Scene {
     std::vector<std::array<Expression, Dim>> wall_velocity;
     FrictionTable friction;
     std::optional<GridContact<Dim>> contact;
+    double travelled = 0.0;  ///< sum over the steps of the longest way that a particle or a wall has gone [m]
     Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
     double mass_damping = 0.0;            ///< [1/s]
     std::vector<Load<Dim>> loads;

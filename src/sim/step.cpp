@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
 #include <chrono>
+#include <limits>
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
@@ -54,8 +54,9 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     const bool with_grid = scene.contact && scene.contact->moves_with_grid();
     struct Sums {
         typename Ledger<Dim>::Entry entry;
-        double damping_half = 0, load_half = 0, kinetic = 0;
+        double damping_half = 0, load_half = 0, kinetic = 0, fastest = 0;
         Sums& operator+=(const Sums& other) {
+            fastest = std::max(fastest, other.fastest);
             entry += other.entry;
             damping_half += other.damping_half;
             load_half += other.load_half;
@@ -80,6 +81,7 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
         s.entry.moment = moment(particles.x[p], Vec<Dim>(dt * outside));
         s.damping_half = 0.5 * dt * damping.dot(before[p]);
         s.load_half = 0.5 * dt * load.dot(before[p]);
+        s.fastest = particles.v[p].squaredNorm();
         s.kinetic = 0.5 * m * v.squaredNorm() + now.part_done() * dp.dot(before[p]);
         return s;
     });
@@ -87,6 +89,7 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     now.ledger.damping_half = sums.damping_half;
     now.ledger.load_half = sums.load_half;
     now.ledger.kinetic = sums.kinetic;
+    now.largest_speed = std::sqrt(sums.fastest);
 }
 
 /// Prescribed velocities; the impulse that they take is external. Before contact its work is taken with the
@@ -104,6 +107,7 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
             const Vec<Dim> v_work = after_contact ? scene.particles.v[p] : v;
             now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
             scene.particles.v[p] = v;
+            now.largest_speed = std::max(now.largest_speed, v.norm());
             now.ledger.now.impulse += dp;
             now.ledger.now.moment += moment(scene.particles.x[p], dp);
         }
@@ -113,10 +117,12 @@ template <int Dim>
 void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     if (!scene.contact) return;
     const Particles<Dim>& particles = scene.particles;
-    const ContactScene<Dim> view{scene.grains,     particles.x, particles.mass,
-                                 particles.volume, scene.walls, &scene.friction};
+    const ContactScene<Dim> view{scene.grains, particles.x,     particles.mass, particles.volume,
+                                 scene.walls,  &scene.friction, scene.travelled};
+    double fastest = now.largest_speed;
+    for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
     const ContactReport<Dim>& report = scene.contact->add_impulses(
-        view, {now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift});
+        view, {now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest});
     typename Ledger<Dim>::Entry& entry = now.ledger.now;
     entry.normal += report.normal_work;
     entry.friction += report.friction_work;
@@ -224,18 +230,27 @@ void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
     Particles<Dim>& particles = scene.particles;
     const bool with_grid = scene.contact && scene.contact->moves_with_grid();
     const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : particles.v;
-    std::atomic<int> lost{particles.size()};
-    parallel::for_each(scene.grains.size(), [&](std::size_t g) {
-        const Grain<Dim>& grain = scene.grains[g];
-        for (int p = grain.first; p < grain.first + grain.count; ++p) {
-            particles.x[p] += now.dt * velocity[p];
-            if (!scene.grid.contains(particles.x[p])) {
-                int least = lost.load();
-                while (p < least && !lost.compare_exchange_weak(least, p)) {
-                }
-            }
+    struct Moved {
+        double fastest = 0.0;  ///< squared speed
+        int lost = std::numeric_limits<int>::max();
+        Moved& operator+=(const Moved& other) {
+            fastest = std::max(fastest, other.fastest);
+            lost = std::min(lost, other.lost);
+            return *this;
         }
-    });
+    };
+    const Moved moved =
+        parallel::sum(static_cast<std::size_t>(particles.size()), Moved{}, [&](std::size_t i) {
+            const int p = static_cast<int>(i);
+            particles.x[p] += now.dt * velocity[p];
+            Moved m;
+            m.fastest = velocity[p].squaredNorm();
+            if (!scene.grid.contains(particles.x[p])) m.lost = p;
+            return m;
+        });
+    double longest = std::sqrt(moved.fastest);
+    for (const Wall<Dim>& wall : scene.walls) longest = std::max(longest, wall.velocity.norm());
+    scene.travelled += now.dt * longest;
     now.ledger.past += now.ledger.now;
     now.ledger.now = {};
     now.time = now.dt * static_cast<double>(++now.step);
@@ -245,8 +260,7 @@ void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
         wall.point += now.dt * wall.velocity;
         for (int k = 0; k < Dim; ++k) wall.velocity[k] = scene.wall_velocity[w][k](now.time);
     }
-    if (lost < particles.size()) {
-        const int p = lost;
+    if (const int p = moved.lost; p < particles.size()) {
         std::size_t g = 0;
         while (p >= scene.grains[g].first + scene.grains[g].count) ++g;
         const bool number = particles.x[p].allFinite();

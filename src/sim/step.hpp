@@ -46,6 +46,7 @@ struct StepContext {
     StageTimes stages;
     std::vector<Vec<Dim>> grain_impulse;  ///< [n_grains] contact impulse since it was last zeroed [N s]
     std::vector<Vec<Dim>> wall_impulse;   ///< [n_walls]
+    double largest_speed = 0.0;           ///< of the particles, with this step's forces, before contact [m/s]
     std::int64_t unconverged = 0, first_unconverged = -1;
     std::int64_t newly_broken = 0;
     /// Share of this step's works that has happened at the time of the positions: the first kick starts

@@ -18,7 +18,7 @@ void for_each_slot(Visit&& visit) {
             ContactNodeOptions options;
             options.interior_weight = weight;
             ContactNodes<Dim> nodes(world.grid, options);
-            nodes.find(world.scene());
+            fill_all(nodes, world.scene());
             REQUIRE(nodes.slots().size() > 4);
             for (const Slot<Dim>& slot : nodes.slots()) visit(slot, world);
         }
@@ -117,7 +117,7 @@ void check_weights() {
             options.nodal = nodal;
             options.interior_weight = 0.3;
             ContactNodes<Dim> nodes(world.grid, options);
-            nodes.find(world.scene());
+            fill_all(nodes, world.scene());
             double worst = 0.0;
             int at_surface = 0, inside = 0;
             for (const Slot<Dim>& slot : nodes.slots())

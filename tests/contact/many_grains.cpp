@@ -1,5 +1,6 @@
 // More than two grains at a node, periodic seams, tiny grains, threads.
 #include "grid/parallel.hpp"
+#include "grid/shape_functions.hpp"
 #include "tests/contact/scenes.hpp"
 
 namespace quern::test {
@@ -32,7 +33,7 @@ World<Dim> make_ring(const Shape<Dim>& shape, int n, const Aim<Dim>& aim, double
 template <int Dim>
 int most_grains_at_a_node(const World<Dim>& world) {
     ContactNodes<Dim> nodes(world.grid, {});
-    nodes.find(world.scene());
+    fill_all(nodes, world.scene());
     std::size_t most = 0;
     for (int i = 0; i < nodes.n_nodes(); ++i) most = std::max(most, nodes.slots_of(i).size());
     return static_cast<int>(most);

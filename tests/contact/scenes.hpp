@@ -23,6 +23,14 @@ struct Placement {
     int material = 0;
 };
 
+/// Finds nodes and fills the slots of all of them.
+template <int Dim>
+void fill_all(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene) {
+    nodes.find(scene, 0.0);
+    nodes.choose_all();
+    nodes.fill(scene);
+}
+
 /// Grains, walls and a grid: everything that a contact step needs.
 template <int Dim>
 struct World {

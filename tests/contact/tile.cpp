@@ -53,7 +53,7 @@ Errors measure_balls(const Shape<Dim>& shape, double ratio, double gap) {
         placement.scale = ratio;
         world.add(shape, c_b, Vec<Dim>::Zero(), placement);
         ContactNodes<Dim> nodes(world.grid, {});
-        nodes.find(world.scene());
+        fill_all(nodes, world.scene());
         const Mat<Dim> rotation = Mat<Dim>::Identity();
         double nearest = far;
         Errors there;
@@ -91,7 +91,7 @@ Errors measure_wall(const Shape<Dim>& shape, double gap) {
         world.add(shape, centre, Vec<Dim>::Zero());
         world.walls.push_back({middle, aim.direction, Vec<Dim>::Zero(), 0.0});
         ContactNodes<Dim> nodes(world.grid, {});
-        nodes.find(world.scene());
+        fill_all(nodes, world.scene());
         const Mat<Dim> rotation = Mat<Dim>::Identity();
         double nearest = far;
         for (const Slot<Dim>& slot : nodes.slots()) {
@@ -160,7 +160,7 @@ TEST_CASE("Tile: nearly flat grains meet nearer to the node, on a wall where the
     const Vec<2> up(0.0, radius);
     const auto tile_at_node = [&](World<2>& world) {
         ContactNodes<2> nodes(world.grid, {});
-        nodes.find(world.scene());
+        fill_all(nodes, world.scene());
         const Mat<2> rotation = Mat<2>::Identity();
         for (int i = 0; i < nodes.n_nodes(); ++i) {
             const std::span<const int> slots = nodes.slots_of(i);
@@ -200,7 +200,7 @@ TEST_CASE("Tile: a block on a tilted wall is exact") {
         world.add(shape, foot + (0.25 + gap) * n, Vec<Dim>::Zero(), placement);
         world.walls.push_back({foot, n, Vec<Dim>::Zero(), 0.0});
         ContactNodes<Dim> nodes(world.grid, {});
-        nodes.find(world.scene());
+        fill_all(nodes, world.scene());
         const Mat<Dim> rotation =
             best_fit_rotation<Dim>(world.grains[0], world.particles.x, world.particles.mass);
         CHECK((rotation - R).norm() < 1e-12);

@@ -6,6 +6,7 @@
 
 #include "grid/node_pages.hpp"
 #include "grid/parallel.hpp"
+#include "grid/shape_functions.hpp"
 
 namespace quern {
 
@@ -33,7 +34,56 @@ void check_pages() {
     std::size_t expected = 1;
     for (int a = 0; a < Dim; ++a)
         expected *= static_cast<std::size_t>((grid.n_nodes()[a] + pages.side - 1) / pages.side);
-    CHECK(pages.n_pages() == expected);
+    CHECK(pages.n_pages() == static_cast<int>(expected));
+    int misplaced = 0;
+    for (int page = 0; page < pages.n_pages(); ++page)
+        for (int i = 0; i < pages.page_size; ++i) {
+            const IntVec<Dim> there = pages.node(page, i);
+            const bool inside = ((grid.n_nodes() - there).array() > 0).all();
+            if (inside) misplaced += &pages[there] != &pages.values(page)[static_cast<std::size_t>(i)];
+        }
+    CHECK(misplaced == 0);
+    pages.clear();
+    CHECK(pages.n_pages() == 0);
+    pages.require(node(5));
+    CHECK(pages[node(5)] == -7);
+}
+
+/// Pages of one colour that hold nodes which share a cell.
+template <int Dim>
+int clashes(int n_cells, bool periodic) {
+    std::array<bool, Dim> axes{};
+    axes.fill(periodic);
+    const CartesianGrid<Dim> grid(Vec<Dim>::Zero(), 1.0, IntVec<Dim>::Constant(n_cells), axes);
+    NodePages<Dim, int> pages(grid, -1);
+    const int n = grid.n_nodes()[0];
+    const auto wrapped = [&](IntVec<Dim> node) {
+        for (int a = 0; a < Dim; ++a) node[a] = periodic ? (node[a] + n) % n : node[a];
+        return node;
+    };
+    const auto for_each_node = [&](auto&& visit) {
+        for (int k = 0; k < grid.n_nodes().prod(); ++k) {
+            IntVec<Dim> node;
+            for (int a = 0, rest = k; a < Dim; rest /= n, ++a) node[a] = rest % n;
+            visit(node);
+        }
+    };
+    for_each_node([&](const IntVec<Dim>& node) { pages.require(node); });
+    for (int page = 0; page < pages.n_pages(); ++page)
+        for (int& value : pages.values(page)) value = page;
+    int found = 0;
+    for_each_node([&](const IntVec<Dim>& node) {
+        for (int k = 0; k < power(3, Dim); ++k) {
+            IntVec<Dim> other = node;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= 3) other[a] += rest % 3 - 1;
+            other = wrapped(other);
+            if ((other.array() < 0).any() || (other.array() >= n).any()) continue;
+            const int a = pages[node], b = pages[other];
+            found += a != b && pages.colour(a) == pages.colour(b);
+            found += pages.colour(a) < 0 || pages.colour(a) >= pages.n_colours;
+        }
+    });
+    return found;
 }
 
 struct Threads {
@@ -47,6 +97,16 @@ struct Threads {
 TEST_CASE("NodePages: every node has a value of its own") {
     check_pages<2>();
     check_pages<3>();
+}
+
+TEST_CASE("NodePages: pages of one colour share no cell") {
+    for (const bool periodic : {false, true})
+        for (const int n : {9, 17, 26, 33, 48, 49, 65, 81}) {
+            CAPTURE(periodic);
+            CAPTURE(n);
+            CHECK(clashes<2>(n, periodic) == 0);
+            if (n < 40) CHECK(clashes<3>(n, periodic) == 0);
+        }
 }
 
 TEST_CASE("NodePages: memory follows the nodes asked for, not the box") {

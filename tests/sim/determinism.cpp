@@ -79,7 +79,10 @@ TEST_CASE("Determinism: results do not depend on how long a search for contact n
         return run_text(packing, overrides).summary.state_hash;
     };
     const std::string every_step = with("0");
-    for (const std::string skin : {"0.02", "0.1", "0.25"}) CHECK(with(skin) == every_step);
+    for (const std::string skin : {"0.02", "0.1", "0.2", "0.25"}) {
+        CAPTURE(skin);
+        CHECK(with(skin) == every_step);
+    }
 }
 
 TEST_CASE("Determinism: every kernel and instruction set agrees to round-off, breaking included") {
