@@ -106,7 +106,7 @@ void PairRule<Dim>::choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Di
     parallel::for_each(scene.grains.size(), [&](std::size_t g) {
         const int grain = static_cast<int>(g);
         if (chooses ? nodes.has_sites(grain) : !nodes.slots_of_grain(grain).empty())
-            rotation_[g] = best_fit_rotation<Dim>(scene.grains[g], scene.x, scene.mass);
+            rotation_[g] = surface_rotation<Dim>(scene.grains[g], scene.x);
     });
     if (!chooses) return;
     if (nodes.may_sleep())

@@ -39,6 +39,23 @@ Mat<Dim> best_fit_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x,
 }
 
 template <int Dim>
+Mat<Dim> surface_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x) {
+    const std::vector<SurfacePoint<Dim>>& surface = grain.shape->surface;
+    Mat<Dim> A = Mat<Dim>::Zero();
+    Vec<Dim> x_sum = Vec<Dim>::Zero(), X_sum = Vec<Dim>::Zero();
+    const Vec<Dim> x_first = x[grain.first + surface.front().node];
+    for (const SurfacePoint<Dim>& point : surface) {
+        const Vec<Dim> r = x[grain.first + point.node] - x_first;
+        const Vec<Dim>& X = grain.shape->X[point.node];
+        A += r * X.transpose();
+        x_sum += r;
+        X_sum += X;
+    }
+    A -= x_sum * X_sum.transpose() / static_cast<double>(surface.size());
+    return nearest_rotation(A);
+}
+
+template <int Dim>
 GrainMotion<Dim> grain_motion(const Grain<Dim>& grain, const Particles<Dim>& particles) {
     GrainMotion<Dim> motion;
     motion.centre.setZero();
@@ -63,6 +80,8 @@ GrainMotion<Dim> grain_motion(const Grain<Dim>& grain, const Particles<Dim>& par
 
 template Mat<2> best_fit_rotation<2>(const Grain<2>&, std::span<const Vec<2>>, std::span<const double>);
 template Mat<3> best_fit_rotation<3>(const Grain<3>&, std::span<const Vec<3>>, std::span<const double>);
+template Mat<2> surface_rotation<2>(const Grain<2>&, std::span<const Vec<2>>);
+template Mat<3> surface_rotation<3>(const Grain<3>&, std::span<const Vec<3>>);
 template GrainMotion<2> grain_motion<2>(const Grain<2>&, const Particles<2>&);
 template GrainMotion<3> grain_motion<3>(const Grain<3>&, const Particles<3>&);
 

@@ -47,6 +47,11 @@ template <int Dim>
 Mat<Dim> best_fit_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x,
                            std::span<const double> mass);
 
+/// Best-fit rotation of the surface of a grain, all points alike: what turns the reference normals of its
+/// surface. A third of the particles of a grain of some hundred.
+template <int Dim>
+Mat<Dim> surface_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x);
+
 template <int Dim>
 GrainMotion<Dim> grain_motion(const Grain<Dim>& grain, const Particles<Dim>& particles);
 
