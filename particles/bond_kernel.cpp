@@ -4,6 +4,18 @@
 #include <cmath>
 
 namespace quern {
+
+struct BondSlots {
+    int n, n_slots, longest_row;
+    const int* row;
+    const int* first;
+    const int* partner;
+    const double* length;
+    const double* weight;
+    const double* bond;
+    const double* node;
+};
+
 namespace {
 
 constexpr int lanes = 4;  // doubles in an AVX2 vector
@@ -35,20 +47,31 @@ struct Scratch {
     }
 };
 
-/// Read-only arrays of the kernel, as the loops want them.
-struct Slots {
-    int n;
-    const int* row;
-    const int* partner;
-    const double* length;
-    const double* weight;
-    const double* bond;
-    const double* node;
-};
+/// A grain over its scale, and which of its slots are intact, into the arrays of the thread.
+template <int Dim, bool with_rate>
+void load(const GrainView<Dim>& grain, const BondSlots& s, Scratch<Dim>& scratch) {
+    const bool masked = !grain.alive.empty();
+    scratch.fit(s.n, s.n_slots, s.longest_row, with_rate, masked);
+    // From the first node: differences of nearby numbers are exact, so a grain far from the origin loses
+    // no digits in the division by its scale.
+    const Vec<Dim> base = grain.x[0];
+    const double inverse = 1.0 / grain.scale;
+    for (int i = 0; i < s.n; ++i)
+        for (int d = 0; d < Dim; ++d) {
+            scratch.x[d][i] = (grain.x[i][d] - base[d]) * inverse;
+            if constexpr (with_rate) scratch.v[d][i] = grain.v[i][d] * inverse;
+        }
+    if (!masked) return;
+    for (int i = 0; i < s.n; ++i) {
+        const int bond = s.first[i], size = s.first[i + 1] - bond;
+        for (int k = 0; k < size; ++k) scratch.mask[s.row[i] + k] = grain.alive[bond + k] ? 1.0 : 0.0;
+        for (int slot = s.row[i] + size; slot < s.row[i + 1]; ++slot) scratch.mask[slot] = 0.0;
+    }
+}
 
 /// Pass 1: q (and the rate) of every slot, D at both ends of every bond.
 template <int Dim, bool with_rate, bool masked>
-void compute_dilatation(const Slots& s, Scratch<Dim>& scratch) {
+void compute_dilatation(const BondSlots& s, Scratch<Dim>& scratch) {
     const int* const __restrict partner = s.partner;
     const double* const __restrict length = s.length;
     const double* const __restrict weight = s.weight;
@@ -95,7 +118,7 @@ void compute_dilatation(const Slots& s, Scratch<Dim>& scratch) {
 
 /// Pass 2: force at both ends. Without dilatation it needs no first pass and finds q itself.
 template <int Dim, bool with_rate, bool masked, bool dilating>
-void compute_forces(const Slots& s, Scratch<Dim>& scratch) {
+void compute_forces(const BondSlots& s, Scratch<Dim>& scratch) {
     const int* const __restrict partner = s.partner;
     const double* const __restrict length = s.length;
     const double* const __restrict weight = s.weight;
@@ -163,11 +186,57 @@ void compute_forces(const Slots& s, Scratch<Dim>& scratch) {
 }
 
 template <int Dim, bool with_rate, bool masked>
-void evaluate(const Slots& s, Scratch<Dim>& scratch) {
+void evaluate(const BondSlots& s, Scratch<Dim>& scratch) {
     if (s.node == nullptr) return compute_forces<Dim, with_rate, masked, false>(s, scratch);
     compute_dilatation<Dim, with_rate, masked>(s, scratch);
     for (int i = 0; i < s.n; ++i) scratch.dilatation[i] *= s.node[i];
     compute_forces<Dim, with_rate, masked, true>(s, scratch);
+}
+
+/// E of a grain of scale 1. A row finds its own D complete at its end: partners come later in the list.
+template <int Dim, bool masked>
+double sum_energy(const BondSlots& s, Scratch<Dim>& scratch) {
+    const int* const __restrict partner = s.partner;
+    const double* const __restrict length = s.length;
+    const double* const __restrict weight = s.weight;
+    const double* const __restrict bond = s.bond;
+    const double* const __restrict mask = scratch.mask.data();
+    const double* const __restrict x = scratch.x[0].data();
+    const double* const __restrict y = scratch.x[1].data();
+    const double* const __restrict z = scratch.x[Dim - 1].data();
+    double* const __restrict given = scratch.row[0].data();
+    double* const __restrict D = scratch.dilatation.data();
+
+    std::fill_n(D, s.n, 0.0);
+    double twice = 0.0;
+    for (int i = 0; i < s.n; ++i) {
+        const int begin = s.row[i], size = (s.row[i + 1] - begin) / lanes * lanes;
+        const double xi = x[i], yi = y[i], zi = z[i];
+        double own = 0.0, stretched = 0.0;
+#pragma omp simd reduction(+ : own, stretched)
+        for (int k = 0; k < size; ++k) {
+            const int b = begin + k, j = partner[b];
+            const double dx = x[j] - xi, dy = y[j] - yi, dz = Dim == 3 ? z[j] - zi : 0.0;
+            double e = std::sqrt(Dim == 3 ? dx * dx + dy * dy + dz * dz : dx * dx + dy * dy) - length[b];
+            if constexpr (masked) e *= mask[b];
+            const double term = weight[b] * length[b] * e;
+            given[k] = term;
+            own += term;
+            stretched += bond[b] * e * e;
+        }
+        twice += stretched;
+        if (s.node == nullptr) continue;
+        for (int k = 0; k < size; ++k) D[partner[begin + k]] += given[k];
+        own += D[i];
+        twice += s.node[i] * own * own;
+    }
+    return 0.5 * twice;
+}
+
+template <int Dim>
+Scratch<Dim>& scratch_of_thread() {
+    thread_local Scratch<Dim> scratch;
+    return scratch;
 }
 
 }  // namespace
@@ -197,42 +266,42 @@ BondKernel<Dim>::BondKernel(const Bonds<Dim>& bonds, const BondStiffness& stiffn
 }
 
 template <int Dim>
+BondSlots BondKernel<Dim>::slots() const {
+    return {static_cast<int>(row_.size()) - 1,
+            static_cast<int>(partner_.size()),
+            longest_row_,
+            row_.data(),
+            first_.data(),
+            partner_.data(),
+            length_.data(),
+            weight_.data(),
+            bond_.data(),
+            node_.empty() ? nullptr : node_.data()};
+}
+
+template <int Dim>
 template <bool rate>
 void BondKernel<Dim>::add_forces(const GrainView<Dim>& grain, double factor, std::span<Vec<Dim>> f) const {
-    thread_local Scratch<Dim> scratch;
-    const int n = static_cast<int>(row_.size()) - 1;
-    const bool masked = !grain.alive.empty();
-    scratch.fit(n, partner_.size(), longest_row_, rate, masked);
-
-    // From the first node: differences of nearby numbers are exact, so a grain far from the origin loses
-    // no digits in the division by its scale.
-    const Vec<Dim> base = grain.x[0];
-    const double inverse = 1.0 / grain.scale;
-    for (int i = 0; i < n; ++i)
-        for (int d = 0; d < Dim; ++d) {
-            scratch.x[d][i] = (grain.x[i][d] - base[d]) * inverse;
-            if constexpr (rate) scratch.v[d][i] = grain.v[i][d] * inverse;
-        }
-    const Slots slots{n,
-                      row_.data(),
-                      partner_.data(),
-                      length_.data(),
-                      weight_.data(),
-                      bond_.data(),
-                      node_.empty() ? nullptr : node_.data()};
-    if (masked) {
-        for (int i = 0; i < n; ++i) {
-            const int bond = first_[i], size = first_[i + 1] - bond;
-            for (int k = 0; k < size; ++k) scratch.mask[row_[i] + k] = grain.alive[bond + k] ? 1.0 : 0.0;
-            for (int slot = row_[i] + size; slot < row_[i + 1]; ++slot) scratch.mask[slot] = 0.0;
-        }
-        evaluate<Dim, rate, true>(slots, scratch);
-    } else {
-        evaluate<Dim, rate, false>(slots, scratch);
-    }
+    Scratch<Dim>& scratch = scratch_of_thread<Dim>();
+    const BondSlots all = slots();
+    load<Dim, rate>(grain, all, scratch);
+    if (grain.alive.empty())
+        evaluate<Dim, rate, false>(all, scratch);
+    else
+        evaluate<Dim, rate, true>(all, scratch);
     const double back = factor * std::pow(grain.scale, Dim - 1);
-    for (int i = 0; i < n; ++i)
+    for (int i = 0; i < all.n; ++i)
         for (int d = 0; d < Dim; ++d) f[i][d] += back * scratch.f[d][i];
+}
+
+template <int Dim>
+double BondKernel<Dim>::elastic_energy(const GrainView<Dim>& grain) const {
+    Scratch<Dim>& scratch = scratch_of_thread<Dim>();
+    const BondSlots all = slots();
+    load<Dim, false>(grain, all, scratch);
+    const double energy =
+        grain.alive.empty() ? sum_energy<Dim, false>(all, scratch) : sum_energy<Dim, true>(all, scratch);
+    return std::pow(grain.scale, Dim) * energy;
 }
 
 template <int Dim>

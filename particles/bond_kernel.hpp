@@ -28,6 +28,8 @@ struct BondStiffness {
     std::vector<double> node;  ///< [n] g; empty: a model without dilatation
 };
 
+struct BondSlots;  ///< the arrays of a kernel, as its loops want them
+
 template <int Dim>
 class BondKernel {
   public:
@@ -38,6 +40,8 @@ class BondKernel {
     void add_elastic_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;
     /// f [n] += the same law with `time` [s] times the rate of extension in place of the extension.
     void add_viscous_forces(const GrainView<Dim>& grain, double time, std::span<Vec<Dim>> f) const;
+    /// The energy E [J; 2D: J/m].
+    double elastic_energy(const GrainView<Dim>& grain) const;
     /// f [n] += forces of small displacements u [n] [m] from the reference X of scale 1 (the exact
     /// derivative).
     void add_linear_forces(std::span<const Vec<Dim>> X, std::span<const Vec<Dim>> u,
@@ -46,6 +50,7 @@ class BondKernel {
   private:
     template <bool rate>
     void add_forces(const GrainView<Dim>& grain, double factor, std::span<Vec<Dim>> f) const;
+    BondSlots slots() const;
 
     std::vector<int> row_;        // [n + 1] first slot of a row, whole vectors
     std::vector<int> first_;      // [n + 1] first bond of a row

@@ -293,9 +293,11 @@ double Scene<Dim>::elastic_energy() const {
         energy += std::visit(
             [&](const auto& model) {
                 return parallel::sum(
-                    static_cast<std::size_t>(group.last_grain - group.first_grain), 0.0, [&](std::size_t i) {
+                    static_cast<std::size_t>(group.last_grain - group.first_grain), 0.0,
+                    [&](std::size_t i) {
                         return model.elastic_energy(view(group.first_grain + static_cast<int>(i)));
-                    });
+                    },
+                    1);
             },
             group.model);
     return energy;
