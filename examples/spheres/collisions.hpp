@@ -12,7 +12,7 @@ namespace quern::spheres {
 
 /// Inverse inertia times angular momentum of one grain's particles [rad/s].
 inline Vec<3> spin_of(const Frame& frame, int grain) {
-    const auto at = [](const std::vector<double>& field, std::size_t i) {
+    const auto at = [](const auto& field, std::size_t i) {
         return Vec<3>(field[3 * i], field[3 * i + 1], field[3 * i + 2]);
     };
     double mass = 0.0;

@@ -45,6 +45,8 @@ void print_profile(const Summary& summary) {
     for (const auto& [stage, seconds] : summary.stages)
         fmt::print("{:<16} {:10.3f} {:7.1f}% {:22.1f}\n", stage, seconds,
                    total > 0.0 ? 100.0 * seconds / total : 0.0, 1e9 * seconds / particle_steps);
+    fmt::print("{:<16} {:10.3f} beside the steps, on a thread of its own\n", "writer",
+               summary.writer_seconds);
     for (const auto& [what, mean] : summary.contact_per_step)
         fmt::print("contact {:<8} {:10.4g} a step\n", what, mean);
     fmt::print("memory {:20.3f} kB a particle at its peak, instructions {}\n\n",

@@ -29,7 +29,7 @@ int stress_index(std::string_view component, int dimension) {
 
 Mat<3> stress_of(const Frame& frame, std::size_t i) {
     const bool plane = frame.dimension == 2;
-    const double* s = &frame.stress[i * (plane ? 4 : 6)];
+    const float* s = &frame.stress[i * (plane ? 4 : 6)];
     const double zz = plane ? s[3] : s[2], xy = plane ? s[2] : s[3];
     const double yz = plane ? 0.0 : s[4], xz = plane ? 0.0 : s[5];
     Mat<3> stress;
@@ -52,6 +52,12 @@ double principal_difference(const Mat<3>& stress, int dimension) {
 double distance(const std::vector<double>& a, const std::vector<double>& b, std::size_t i, std::size_t d) {
     double squared = 0.0;
     for (std::size_t k = i * d; k < (i + 1) * d; ++k) squared += (a[k] - b[k]) * (a[k] - b[k]);
+    return std::sqrt(squared);
+}
+
+double length(const std::vector<float>& a, std::size_t i, std::size_t d) {
+    double squared = 0.0;
+    for (std::size_t k = i * d; k < (i + 1) * d; ++k) squared += static_cast<double>(a[k]) * a[k];
     return std::sqrt(squared);
 }
 
@@ -117,15 +123,14 @@ std::vector<double> make_field_values(const Field& field, const Frame& frame, co
         for (std::size_t i = 0; i < n; ++i) values[i] = value_of(i);
     };
     if (name == "speed") {
-        const std::vector<double> rest(n * d, 0.0);
-        fill([&](std::size_t i) { return distance(frame.velocity, rest, i, d); });
+        fill([&](std::size_t i) { return length(frame.velocity, i, d); });
     } else if (name == "displacement") {
         fill([&](std::size_t i) { return distance(frame.position, first.position, i, d); });
     } else if (name.starts_with("velocity_")) {
         const auto axis = static_cast<std::size_t>(name.back() - 'x');
         fill([&](std::size_t i) { return frame.velocity[i * d + axis]; });
     } else if (name == "damage") {
-        values = frame.damage;
+        values.assign(frame.damage.begin(), frame.damage.end());
     } else if (name == "grain") {
         fill([&](std::size_t i) { return frame.grain[i]; });
     } else if (name == "von_mises") {

@@ -156,9 +156,9 @@ Frame FrameFileReader::read(std::size_t index) const {
     frame.damage.resize(n);
     frame.stress.resize(n * (d == 2 ? 4 : 6));
     file.read("position", H5T_NATIVE_DOUBLE, index, 1, frame.position);
-    file.read("velocity", H5T_NATIVE_DOUBLE, index, 1, frame.velocity);
-    file.read("damage", H5T_NATIVE_DOUBLE, index, 1, frame.damage);
-    file.read("stress", H5T_NATIVE_DOUBLE, index, 1, frame.stress);
+    file.read("velocity", H5T_NATIVE_FLOAT, index, 1, frame.velocity);
+    file.read("damage", H5T_NATIVE_FLOAT, index, 1, frame.damage);
+    file.read("stress", H5T_NATIVE_FLOAT, index, 1, frame.stress);
     frame.grain = file.grain;
     frame.volume = file.volume;
     return frame;

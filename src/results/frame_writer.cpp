@@ -14,9 +14,17 @@ namespace quern {
 
 namespace {
 
-constexpr hsize_t particles_per_chunk = 1 << 16;
+constexpr hsize_t particles_per_chunk = 1 << 22;
 constexpr hsize_t times_per_chunk = 256;
 constexpr unsigned deflate_level = 1;  // higher levels cost several times the time for a few percent
+
+// A kill can cut a write between two pages. An index cut in two would lose frames that were complete before,
+// so every node of it is one page: one of 2 * 42 chunks in three dimensions takes 4096 bytes. Left is the
+// moment in which a full node is split, at frame 84 and every 42 after.
+constexpr hsize_t page = 4096;
+constexpr unsigned half_of_index_node = 42;
+
+enum class Packing { plain, deflated };
 
 const char* stress_components(int dimension) {
     return dimension == 2 ? "xx, yy, xy, zz" : "xx, yy, zz, xy, yz, xz";
@@ -65,8 +73,8 @@ struct FrameFileWriter::Impl {
     }
 
     /// Unlimited along the first axis when it is 0.
-    Hdf5Handle add_dataset(const char* name, hid_t type, std::vector<hsize_t> shape, const char* unit,
-                           const std::string& description) const {
+    Hdf5Handle add_dataset(const char* name, hid_t type, std::vector<hsize_t> shape, Packing packing,
+                           const char* unit, const std::string& description) const {
         const bool grows = shape[0] == 0, one_number_a_frame = grows && shape.size() == 1;
         std::vector<hsize_t> limit = shape, chunk = shape;
         if (grows) {
@@ -74,14 +82,17 @@ struct FrameFileWriter::Impl {
             chunk[0] = one_number_a_frame ? times_per_chunk : 1;
         }
         hsize_t& particles = chunk[grows && !one_number_a_frame ? 1 : 0];
-        particles = std::clamp<hsize_t>(particles, 1, particles_per_chunk);
+        // Equal parts: a plain chunk takes its full size in the file, however little of it is used.
+        const hsize_t parts =
+            std::max<hsize_t>(1, (particles + particles_per_chunk - 1) / particles_per_chunk);
+        particles = std::max<hsize_t>(1, (particles + parts - 1) / parts);
 
         const Hdf5Handle properties = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
         check(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "set the chunks");
-        // A chunk that grows over several frames would move in the file each time it is compressed anew, and
-        // a run that is killed meanwhile would leave a chunk that cannot be read. Left alone it stays in its
-        // place.
-        if (!one_number_a_frame) {
+        // A chunk that grows over several frames (/time, /step) would move in the file each time it is
+        // compressed anew, and a run that is killed meanwhile would leave a chunk that cannot be read. Left
+        // alone it stays in its place.
+        if (packing == Packing::deflated) {
             check(H5Pset_shuffle(properties), "set the shuffle filter");
             check(H5Pset_deflate(properties, deflate_level), "set the compression");
         }
@@ -99,17 +110,19 @@ struct FrameFileWriter::Impl {
     void make_datasets(const Frame& first) {
         n_particles = first.n();
         const hsize_t n = n_particles, d = static_cast<hsize_t>(dimension);
-        const hid_t real = H5T_IEEE_F64LE;
-        time = add_dataset("time", real, {0}, "s", "time of each frame");
-        step = add_dataset("step", H5T_STD_I64LE, {0}, "1", "number of steps done before each frame");
-        position = add_dataset("position", real, {0, n, d}, "m", "current position");
-        velocity = add_dataset("velocity", real, {0, n, d}, "m/s", "velocity");
-        damage = add_dataset("damage", real, {0, n}, "1", "fraction of broken bonds, 0 intact, 1 all broken");
-        stress = add_dataset("stress", real, {0, n, d == 2 ? 4u : 6u}, "Pa",
+        const hid_t real = H5T_IEEE_F64LE, single = H5T_IEEE_F32LE;
+        time = add_dataset("time", real, {0}, Packing::plain, "s", "time of each frame");
+        step = add_dataset("step", H5T_STD_I64LE, {0}, Packing::plain, "1",
+                           "number of steps done before each frame");
+        position = add_dataset("position", real, {0, n, d}, Packing::plain, "m", "current position");
+        velocity = add_dataset("velocity", single, {0, n, d}, Packing::plain, "m/s", "velocity");
+        damage = add_dataset("damage", single, {0, n}, Packing::deflated, "1",
+                             "fraction of broken bonds, 0 intact, 1 all broken");
+        stress = add_dataset("stress", single, {0, n, d == 2 ? 4u : 6u}, Packing::plain, "Pa",
                              fmt::format("Cauchy stress {}, tension positive", stress_components(dimension)));
-        const Hdf5Handle grain =
-            add_dataset("grain", H5T_STD_I32LE, {n}, "1", "grain of each particle, from 0");
-        const Hdf5Handle volume = add_dataset("volume", real, {n}, d == 2 ? "m^2" : "m^3",
+        const Hdf5Handle grain = add_dataset("grain", H5T_STD_I32LE, {n}, Packing::deflated, "1",
+                                             "grain of each particle, from 0");
+        const Hdf5Handle volume = add_dataset("volume", real, {n}, Packing::deflated, d == 2 ? "m^2" : "m^3",
                                               d == 2 ? "reference area" : "reference volume");
         if (n == 0) return;
         check(H5Dwrite(grain, H5T_NATIVE_INT32, H5S_ALL, H5S_ALL, H5P_DEFAULT, first.grain.data()), "write");
@@ -160,8 +173,11 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const s
     const Hdf5Handle access = impl_->checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
     // Without locks a picture can be drawn from a run that is still going on.
     impl_->check(H5Pset_file_locking(access, false, true), "set the file access");
-    impl_->file = impl_->checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose,
-                                 "create the file");
+    impl_->check(H5Pset_alignment(access, page / 2, page), "set the file access");
+    const Hdf5Handle creation = impl_->checked(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
+    impl_->check(H5Pset_istore_k(creation, half_of_index_node), "set the size of the index");
+    impl_->file =
+        impl_->checked(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation, access), H5Fclose, "create the file");
     impl_->add_attribute(impl_->file, "format", "quern results 1");
     impl_->add_attribute(impl_->file, "version", QUERN_VERSION);
     impl_->add_attribute(impl_->file, "title", title);
@@ -173,14 +189,15 @@ FrameFileWriter::~FrameFileWriter() = default;
 
 void FrameFileWriter::add(const Frame& frame) {
     impl_->require_consistent(frame);
+    silence_hdf5();
     impl_->require_not_deleted();
     if (impl_->n_frames == 0) impl_->make_datasets(frame);
     const Impl& file = *impl_;
     if (file.n_particles > 0) {
         file.append(file.position, H5T_NATIVE_DOUBLE, frame.position.data());
-        file.append(file.velocity, H5T_NATIVE_DOUBLE, frame.velocity.data());
-        file.append(file.damage, H5T_NATIVE_DOUBLE, frame.damage.data());
-        file.append(file.stress, H5T_NATIVE_DOUBLE, frame.stress.data());
+        file.append(file.velocity, H5T_NATIVE_FLOAT, frame.velocity.data());
+        file.append(file.damage, H5T_NATIVE_FLOAT, frame.damage.data());
+        file.append(file.stress, H5T_NATIVE_FLOAT, frame.stress.data());
     }
     file.append(file.step, H5T_NATIVE_INT64, &frame.step);
     // All that the new frame needs is on disk before /time counts it, wherever a kill hits.

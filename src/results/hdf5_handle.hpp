@@ -36,7 +36,7 @@ class Hdf5Handle {
     Close close_ = nullptr;
 };
 
-/// Keeps HDF5 from printing its error stack; the reason goes into our message instead.
+/// Keeps HDF5 from printing the error stack of this thread; the reason goes into our message instead.
 void silence_hdf5();
 
 /// Reason of the last HDF5 failure: the system's where HDF5 recorded an errno, else HDF5's innermost words.

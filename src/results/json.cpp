@@ -127,6 +127,7 @@ std::string make_summary_json(const Summary& summary) {
     block.add("ns_per_particle_step", json_number(summary.ns_per_particle_step));
     block.add("peak_memory_bytes", json_number(summary.peak_memory_bytes));
     block.add("stages", stages.str());
+    block.add("writer_seconds", json_number(summary.writer_seconds));
     block.add("contact_per_step", contact.str());
     block.add("energy", make_energy(summary.energy, summary.residual_relative));
     block.add("momentum_error", momentum_error.str());

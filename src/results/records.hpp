@@ -8,15 +8,16 @@
 
 namespace quern {
 
-/// Particles at one time. Vector fields are [n * dimension], particle-major.
+/// Particles at one time. Vector fields are [n * dimension], particle-major. Double where differences of
+/// nearby numbers matter, float where seven digits tell all.
 struct Frame {
     int dimension = 2;
     std::int64_t step = 0;
     double time = 0.0;             ///< [s]
     std::vector<double> position;  ///< [n * dimension] [m]
-    std::vector<double> velocity;  ///< [n * dimension] [m/s]
-    std::vector<double> damage;    ///< [n] fraction of broken bonds
-    std::vector<double>
+    std::vector<float> velocity;   ///< [n * dimension] [m/s]
+    std::vector<float> damage;     ///< [n] fraction of broken bonds
+    std::vector<float>
         stress;  ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
     std::vector<std::int32_t> grain;  ///< [n]
     std::vector<double> volume;       ///< [n] reference volume [m^2 | m^3]
@@ -59,6 +60,7 @@ struct Summary {
     double simulated_time = 0, time_step = 0, stable_step = 0;
     double wall_seconds = 0, ns_per_particle_step = 0, peak_memory_bytes = 0;
     std::vector<std::pair<std::string, double>> stages;  ///< seconds a stage, in the order of the step
+    double writer_seconds = 0;                           ///< spent writing, beside the steps
     /// Contact nodes, pairs with a row, sweeps and searches, mean of a step.
     std::vector<std::pair<std::string, double>> contact_per_step;
     EnergyBudget energy;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <vtkCellArray.h>
 #include <vtkDoubleArray.h>
+#include <vtkFloatArray.h>
 #include <vtkIntArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -20,8 +21,9 @@ namespace quern {
 namespace {
 
 /// An array of `n_out` components from one of `n_in`, padded with zeros.
-void add_array(vtkPolyData* cloud, const char* name, const std::vector<double>& values, int n_in, int n_out) {
-    vtkNew<vtkDoubleArray> array;
+template <class Array, class T>
+void add_array(vtkPolyData* cloud, const char* name, const std::vector<T>& values, int n_in, int n_out) {
+    vtkNew<Array> array;
     array->SetName(name);
     array->SetNumberOfComponents(n_out);
     array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / n_in);
@@ -33,12 +35,12 @@ void add_array(vtkPolyData* cloud, const char* name, const std::vector<double>& 
 }
 
 /// VTK's order of a symmetric tensor: xx, yy, zz, xy, yz, xz.
-std::vector<double> make_vtk_stress(const Frame& frame) {
+std::vector<float> make_vtk_stress(const Frame& frame) {
     if (frame.dimension == 3) return frame.stress;
-    std::vector<double> stress(6 * frame.n(), 0.0);
+    std::vector<float> stress(6 * frame.n(), 0.0);
     for (std::size_t i = 0; i < frame.n(); ++i) {
-        const double* s = &frame.stress[4 * i];
-        std::copy_n(std::initializer_list<double>{s[0], s[1], s[3], s[2]}.begin(), 4, &stress[6 * i]);
+        const float* s = &frame.stress[4 * i];
+        std::copy_n(std::initializer_list<float>{s[0], s[1], s[3], s[2]}.begin(), 4, &stress[6 * i]);
     }
     return stress;
 }
@@ -83,10 +85,10 @@ void VtpSeries::add(const Frame& frame) {
     cloud->SetPoints(points);
     cloud->SetVerts(vertices);
     cloud->GetPointData()->AddArray(grain);
-    add_array(cloud, "velocity", frame.velocity, frame.dimension, 3);
-    add_array(cloud, "stress", make_vtk_stress(frame), 6, 6);
-    add_array(cloud, "damage", frame.damage, 1, 1);
-    add_array(cloud, "volume", frame.volume, 1, 1);
+    add_array<vtkFloatArray>(cloud, "velocity", frame.velocity, frame.dimension, 3);
+    add_array<vtkFloatArray>(cloud, "stress", make_vtk_stress(frame), 6, 6);
+    add_array<vtkFloatArray>(cloud, "damage", frame.damage, 1, 1);
+    add_array<vtkDoubleArray>(cloud, "volume", frame.volume, 1, 1);
 
     vtkNew<vtkXMLPolyDataWriter> writer;
     writer->SetInputData(cloud);

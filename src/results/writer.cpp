@@ -37,6 +37,9 @@ std::string cells(const double (&vector)[3], int dimension) {
                           : fmt::format(",{},{},{}", vector[0], vector[1], vector[2]);
 }
 
+/// Rows that are handed over without waiting for a frame.
+constexpr std::size_t long_packet = 4096;
+
 /// A directory that can be written to, without what would tell of another run.
 const std::string& make_run_directory(const WriterOptions& options) {
     create_directory(options.directory);
@@ -66,6 +69,10 @@ struct ResultWriter::Files {
         if (options.vtp) vtp.emplace(directory);
     }
 
+    void write(const Packet& packet);
+    void write(const HistoryRow& row);
+    void write(const GrainRow& row);
+
     std::string directory;
     int dimension;
     OutputFile log, history, grains;
@@ -80,9 +87,17 @@ ResultWriter::ResultWriter(const WriterOptions& options) {
     if (!options.domain.empty() && options.domain.size() != 2 * static_cast<std::size_t>(options.dimension))
         throw std::invalid_argument("ResultWriter: domain has not 2 * dimension numbers");
     files_ = std::make_unique<Files>(options);
+    background_ = std::make_unique<BackgroundWriter>(
+        [files = files_.get()](const Packet& packet) { files->write(packet); });
 }
 
-ResultWriter::~ResultWriter() = default;
+ResultWriter::~ResultWriter() {
+    try {
+        if (background_) hand_over();
+    } catch (const std::exception&) {
+        // A destructor has nobody to tell; owners that care have called finish().
+    }
+}
 
 void ResultWriter::write_text(const std::string& file_name, const std::string& text) {
     write_whole_file(files_->directory + "/" + file_name, text);
@@ -93,38 +108,78 @@ void ResultWriter::log(const std::string& line) {
     files_->log.flush();
 }
 
-void ResultWriter::add_frame(const Frame& frame) {
-    Files& to = *files_;
-    to.frames.add(frame);
-    to.xdmf.add(frame.time, frame.n());
-    if (to.vtp) to.vtp->add(frame);
-    to.history.flush();
-    to.grains.flush();
+Frame ResultWriter::add_frame(Frame frame) {
+    packet_.frame = std::move(frame);
+    packet_.has_frame = true;
+    hand_over();
+    return std::move(packet_.frame);
 }
 
 void ResultWriter::add_history(const HistoryRow& row) {
+    packet_.history.push_back(row);
+    hand_over_if_long();
+}
+
+void ResultWriter::add_grain(const GrainRow& row) {
+    packet_.grains.push_back(row);
+    hand_over_if_long();
+}
+
+void ResultWriter::hand_over_if_long() {
+    if (packet_.history.size() + packet_.grains.size() >= long_packet) hand_over();
+}
+
+void ResultWriter::hand_over() {
+    background_->hand_over(packet_);
+    packet_.history.clear();
+    packet_.grains.clear();
+    packet_.has_frame = false;
+}
+
+void ResultWriter::flush() {
+    hand_over();
+    background_->wait();
+    files_->history.flush();
+    files_->grains.flush();
+}
+
+double ResultWriter::busy_seconds() const {
+    return background_->busy_seconds();
+}
+
+void ResultWriter::finish(const Summary& summary) {
+    flush();
+    background_.reset();
+    files_->frames.close();
+    write_text("summary.json", make_summary_json(summary));
+    files_->log.flush();
+}
+
+void ResultWriter::Files::write(const Packet& packet) {
+    for (const HistoryRow& row : packet.history) write(row);
+    for (const GrainRow& row : packet.grains) write(row);
+    if (!packet.has_frame) return;
+    frames.add(packet.frame);
+    xdmf.add(packet.frame.time, packet.frame.n());
+    if (vtp) vtp->add(packet.frame);
+    history.flush();
+    grains.flush();
+}
+
+void ResultWriter::Files::write(const HistoryRow& row) {
     const EnergyBudget& e = row.energy;
     std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
                                    e.gravity, e.damping, e.friction, e.contact_loss, e.fracture,
                                    e.transfer_loss, e.external_work, e.residual, e.throughput);
-    line += cells(row.momentum, files_->dimension);
-    line +=
-        files_->dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
-    files_->history.write(line + "\n");
+    line += cells(row.momentum, dimension);
+    line += dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
+    history.write(line + "\n");
 }
 
-void ResultWriter::add_grain(const GrainRow& row) {
-    const int d = files_->dimension;
-    files_->grains.write(fmt::format("{},{}{}{},{},{}{}\n", row.time, row.grain, cells(row.position, d),
-                                     cells(row.velocity, d), row.angle, row.omega, cells(row.force, d)));
-}
-
-void ResultWriter::finish(const Summary& summary) {
-    files_->history.flush();
-    files_->grains.flush();
-    files_->frames.close();
-    write_text("summary.json", make_summary_json(summary));
-    files_->log.flush();
+void ResultWriter::Files::write(const GrainRow& row) {
+    const int d = dimension;
+    grains.write(fmt::format("{},{}{}{},{},{}{}\n", row.time, row.grain, cells(row.position, d),
+                             cells(row.velocity, d), row.angle, row.omega, cells(row.force, d)));
 }
 
 }  // namespace quern

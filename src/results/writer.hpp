@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "src/results/background_writer.hpp"
 #include "src/results/records.hpp"
 
 namespace quern {
@@ -17,24 +18,37 @@ struct WriterOptions {
     std::vector<double> domain = {};  ///< lower, then upper corner [m], 2 * dimension; empty: none
 };
 
-/// Files of one run. Any failure to write throws OutputError naming the file and the system's reason.
+/// Files of one run. Rows and frames are written on a thread of their own, in the order in which they were
+/// added; an add waits only while the frame before is still being written. Any failure to write throws
+/// OutputError naming the file and the system's reason: of rows and frames by a later add, by flush() or by
+/// finish().
 class ResultWriter {
   public:
     explicit ResultWriter(const WriterOptions& options);
-    ~ResultWriter();
+    ~ResultWriter();  ///< writes what was added; errors are lost, so finish() first
     ResultWriter(const ResultWriter&) = delete;
     ResultWriter& operator=(const ResultWriter&) = delete;
 
     void write_text(const std::string& file_name, const std::string& text);  ///< e.g. deck.resolved.yaml
     void log(const std::string& line);                                       ///< run.log, flushed
-    void add_frame(const Frame& frame);       ///< results.h5, results.xdmf, frames/frame_00000.vtp
+
+    /// results.h5, results.xdmf, frames/frame_00000.vtp. Gives back an older frame, for its memory.
+    Frame add_frame(Frame frame);
     void add_history(const HistoryRow& row);  ///< history.csv
     void add_grain(const GrainRow& row);      ///< grains.csv
-    void finish(const Summary& summary);      ///< summary.json; flushes and closes all
+    void flush();                             ///< until all that was added is on disk
+    void finish(const Summary& summary);      ///< summary.json; flushes and closes all, ends the thread
+
+    double busy_seconds() const;  ///< what the thread has spent writing; finish() not yet called [s]
 
   private:
+    void hand_over();
+    void hand_over_if_long();
+
     struct Files;
     std::unique_ptr<Files> files_;
+    Packet packet_;  // being filled
+    std::unique_ptr<BackgroundWriter> background_;
 };
 
 }  // namespace quern

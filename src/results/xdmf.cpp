@@ -15,15 +15,15 @@ constexpr const char* head =
     "  <Grid Name=\"particles\" GridType=\"Collection\" CollectionType=\"Temporal\">\n";
 constexpr const char* tail = "  </Grid>\n </Domain>\n</Xdmf>\n";
 
-/// One frame of a dataset [F, n, c], components [first, first + n_components).
-std::string frame_of(const char* dataset, std::size_t frame, std::size_t n, int c, int first,
+/// One frame of a dataset [F, n, c] of numbers of `bytes`, components [first, first + n_components).
+std::string frame_of(const char* dataset, int bytes, std::size_t frame, std::size_t n, int c, int first,
                      int n_components) {
     return fmt::format(
         "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{1} {5}\">"
         "<DataItem Dimensions=\"3 3\" Format=\"XML\">{0} 0 {4} 1 1 1 1 {1} {5}</DataItem>"
-        "<DataItem Dimensions=\"{2} {1} {3}\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">"
+        "<DataItem Dimensions=\"{2} {1} {3}\" NumberType=\"Float\" Precision=\"{7}\" Format=\"HDF\">"
         "results.h5:/{6}</DataItem></DataItem>",
-        frame, n, frame + 1, c, first, n_components, dataset);
+        frame, n, frame + 1, c, first, n_components, dataset, bytes);
 }
 
 std::string attribute(const std::string& name, const char* type, const std::string& data) {
@@ -47,21 +47,21 @@ void XdmfFile::add(double time, std::size_t n) {
         "    <Time Value=\"{1}\"/>\n"
         "    <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"{2}\" NodesPerElement=\"1\"/>\n"
         "    <Geometry GeometryType=\"{3}\">{4}</Geometry>\n",
-        f, time, n, d == 2 ? "XY" : "XYZ", frame_of("position", f, n, d, 0, d));
-    if (d == 3) grid += attribute("velocity", "Vector", frame_of("velocity", f, n, d, 0, d));
+        f, time, n, d == 2 ? "XY" : "XYZ", frame_of("position", 8, f, n, d, 0, d));
+    if (d == 3) grid += attribute("velocity", "Vector", frame_of("velocity", 4, f, n, d, 0, d));
     // ParaView's reader takes every vector for three components: in the plane, two scalars.
     for (int k = 0; d == 2 && k < d; ++k)
         grid +=
-            attribute(k == 0 ? "velocity_x" : "velocity_y", "Scalar", frame_of("velocity", f, n, d, k, 1));
+            attribute(k == 0 ? "velocity_x" : "velocity_y", "Scalar", frame_of("velocity", 4, f, n, d, k, 1));
     const int n_stress = d == 2 ? 4 : 6;
     for (int k = 0; k < n_stress; ++k)
         grid += attribute(fmt::format("stress_{}", axes[static_cast<std::size_t>(k)]), "Scalar",
-                          frame_of("stress", f, n, n_stress, k, 1));
+                          frame_of("stress", 4, f, n, n_stress, k, 1));
     grid += attribute(
         "damage", "Scalar",
         fmt::format("<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0}\">"
                     "<DataItem Dimensions=\"3 2\" Format=\"XML\">{1} 0 1 1 1 {0}</DataItem>"
-                    "<DataItem Dimensions=\"{2} {0}\" NumberType=\"Float\" Precision=\"8\" Format=\"HDF\">"
+                    "<DataItem Dimensions=\"{2} {0}\" NumberType=\"Float\" Precision=\"4\" Format=\"HDF\">"
                     "results.h5:/damage</DataItem></DataItem>",
                     n, f, f + 1));
     grid += attribute("grain", "Scalar",

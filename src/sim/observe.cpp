@@ -164,17 +164,16 @@ std::vector<GrainRow> GrainTracker<Dim>::rows(const Scene<Dim>& scene, StepConte
 }
 
 template <int Dim>
-Frame make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now) {
+void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& frame) {
     const std::size_t n = static_cast<std::size_t>(scene.particles.size());
-    constexpr std::size_t n_stress = Dim == 2 ? 4 : 6;
-    Frame frame;
+    constexpr std::size_t d = Dim, n_components = Dim == 2 ? 4 : 6;
     frame.dimension = Dim;
     frame.step = now.step;
     frame.time = now.time;
-    frame.position.resize(n * Dim);
-    frame.velocity.resize(n * Dim);
+    frame.position.resize(n * d);
+    frame.velocity.resize(n * d);
     frame.damage.resize(n);
-    frame.stress.resize(n * n_stress);
+    frame.stress.resize(n * n_components);
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;
     for (const MaterialGroup<Dim>& group : scene.groups)
@@ -184,23 +183,29 @@ Frame make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now) {
                     static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
                         const int g = group.first_grain + static_cast<int>(i);
                         const Grain<Dim>& grain = scene.grains[g];
+                        const GrainView<Dim> view = scene.view(g);
                         const std::size_t first = static_cast<std::size_t>(grain.first);
                         const std::size_t count = static_cast<std::size_t>(grain.count);
-                        model.compute_damage(scene.view(g), {frame.damage.data() + first, count});
-                        model.compute_stress(scene.view(g),
-                                             {frame.stress.data() + n_stress * first, n_stress * count});
+                        thread_local std::vector<double> wide;
+                        wide.assign(n_components * count, 0.0);
+                        const auto narrow = [](double value) { return static_cast<float>(value); };
+                        if (!view.alive.empty()) model.compute_damage(view, {wide.data(), count});
+                        std::transform(wide.begin(), wide.begin() + grain.count,
+                                       frame.damage.begin() + grain.first, narrow);
+                        model.compute_stress(view, wide);
+                        std::transform(wide.begin(), wide.end(), frame.stress.data() + n_components * first,
+                                       narrow);
                         for (std::size_t p = first; p < first + count; ++p) {
                             const Vec<Dim> v = velocity_now(scene, now, static_cast<int>(p));
-                            for (std::size_t a = 0; a < Dim; ++a) {
-                                frame.position[p * Dim + a] = scene.particles.x[p][static_cast<int>(a)];
-                                frame.velocity[p * Dim + a] = v[static_cast<int>(a)];
+                            for (std::size_t a = 0; a < d; ++a) {
+                                frame.position[p * d + a] = scene.particles.x[p][static_cast<int>(a)];
+                                frame.velocity[p * d + a] = narrow(v[static_cast<int>(a)]);
                             }
                             frame.grain[p] = grain.id;
                         }
                     });
             },
             group.model);
-    return frame;
 }
 
 template <int Dim>
@@ -226,8 +231,8 @@ template class Observer<2>;
 template class Observer<3>;
 template class GrainTracker<2>;
 template class GrainTracker<3>;
-template Frame make_frame<2>(const Scene<2>&, const StepContext<2>&);
-template Frame make_frame<3>(const Scene<3>&, const StepContext<3>&);
+template void make_frame<2>(const Scene<2>&, const StepContext<2>&, Frame&);
+template void make_frame<3>(const Scene<3>&, const StepContext<3>&, Frame&);
 template std::string state_hash<2>(const Scene<2>&);
 template std::string state_hash<3>(const Scene<3>&);
 

@@ -61,8 +61,9 @@ class GrainTracker {
     std::vector<Mat<Dim>> rotation_;
 };
 
+/// Fills the arrays of `frame`, whose memory is kept.
 template <int Dim>
-Frame make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now);
+void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& frame);
 
 /// FNV-1a over positions and velocities of all particles, grain by grain in the deck's order.
 template <int Dim>

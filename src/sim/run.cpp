@@ -234,7 +234,10 @@ class Run {
                 write_rows(observer, tracker, now_.time - last_row);
                 last_row = now_.time;
             }
-            if (frames.due(now_.time, now_.dt) || last) writer_.add_frame(make_frame(*scene_, now_));
+            if (frames.due(now_.time, now_.dt) || last) {
+                make_frame(*scene_, now_, frame_);
+                frame_ = writer_.add_frame(std::move(frame_));
+            }
             progress.update(now_.step, now_.time, observer.residual_relative());
             now_.stages.output += seconds_since(output_start);
             if (last) break;
@@ -289,6 +292,10 @@ class Run {
     }
 
     void close() {
+        const auto output_start = Clock::now();
+        writer_.flush();
+        now_.stages.output += seconds_since(output_start);
+        summary_.writer_seconds = writer_.busy_seconds();
         summary_.wall_seconds = seconds_since(start_);
         summary_.steps = now_.step;
         summary_.simulated_time = now_.time;
@@ -328,6 +335,7 @@ class Run {
     ResultWriter writer_;
     std::unique_ptr<Scene<Dim>> scene_;
     StepContext<Dim> now_;
+    Frame frame_;
     std::int64_t n_steps_ = 0;
     Summary summary_;
     RunRecord* record_ = nullptr;

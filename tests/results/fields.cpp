@@ -13,7 +13,7 @@ using namespace quern;
 namespace {
 
 /// One particle under a stress: in 2D xx, yy, xy, zz; in 3D xx, yy, zz, xy, yz, xz.
-Frame make_frame(const std::vector<double>& stress) {
+Frame make_frame(const std::vector<float>& stress) {
     Frame frame;
     frame.dimension = stress.size() == 4 ? 2 : 3;
     frame.position = {3.0, 4.0, 0.0};

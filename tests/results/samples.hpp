@@ -56,11 +56,11 @@ inline Frame make_sample_frame(int dimension, int number) {
                               dx * (i / n_side % n_side + 0.5), dx * (i / (n_side * n_side) + 0.5)};
         for (int c = 0; c < dimension; ++c) {
             frame.position.push_back(at[c]);
-            frame.velocity.push_back((c == 0 ? 1.0 : 0.1) * grain + 1e-3 * p);
+            frame.velocity.push_back(static_cast<float>((c == 0 ? 1.0 : 0.1) * grain + 1e-3 * p));
         }
-        frame.damage.push_back(p % 7 / 7.0);
+        frame.damage.push_back(static_cast<float>(p % 7) / 7.0F);
         for (int c = 0; c < (dimension == 2 ? 4 : 6); ++c)
-            frame.stress.push_back(1e4 * (p - n_grain) + 10.0 * c + number);
+            frame.stress.push_back(static_cast<float>(1e4 * (p - n_grain) + 10.0 * c + number));
         frame.grain.push_back(grain);
         frame.volume.push_back(dimension == 2 ? dx * dx : dx * dx * dx);
     }

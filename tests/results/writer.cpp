@@ -87,9 +87,15 @@ TEST_CASE("FrameFileWriter: datasets are chunked, compressed, extendible and car
     CHECK(H5Sget_simple_extent_dims(space, shape, limit) == 3);
     CHECK((shape[0] == 2 && shape[1] == 200 && shape[2] == 4));
     CHECK(limit[0] == H5S_UNLIMITED);
-    const hid_t properties = H5Dget_create_plist(dataset);
+    const hid_t stored = H5Dget_type(dataset);
+    CHECK(H5Tget_size(stored) == 4);
+    hid_t properties = H5Dget_create_plist(dataset);
     REQUIRE(H5Pget_chunk(properties, 3, chunk) == 3);
     CHECK((chunk[0] == 1 && chunk[1] == 200 && chunk[2] == 4));
+    CHECK(H5Pget_nfilters(properties) == 0);
+    H5Pclose(properties);
+    const hid_t damage = H5Dopen2(file, "/damage", H5P_DEFAULT);
+    properties = H5Dget_create_plist(damage);
     CHECK(H5Pget_filter_by_id2(properties, H5Z_FILTER_DEFLATE, nullptr, nullptr, nullptr, 0, nullptr,
                                nullptr) >= 0);
     CHECK(H5Pget_filter_by_id2(properties, H5Z_FILTER_SHUFFLE, nullptr, nullptr, nullptr, 0, nullptr,
@@ -99,8 +105,8 @@ TEST_CASE("FrameFileWriter: datasets are chunked, compressed, extendible and car
     REQUIRE(H5Aread(attribute, type, &unit) >= 0);
     CHECK(std::string(unit) == "Pa");
     H5free_memory(unit);
-    H5Tclose(type), H5Aclose(attribute), H5Pclose(properties), H5Sclose(space), H5Dclose(dataset),
-        H5Fclose(file);
+    H5Tclose(type), H5Tclose(stored), H5Aclose(attribute), H5Pclose(properties), H5Sclose(space),
+        H5Dclose(damage), H5Dclose(dataset), H5Fclose(file);
 }
 
 TEST_CASE("ResultWriter: a run that dies leaves files that can be read") {
@@ -108,6 +114,7 @@ TEST_CASE("ResultWriter: a run that dies leaves files that can be read") {
     ResultWriter writer({.directory = scratch.path("run"), .dimension = 2});
     CHECK_THROWS_AS(FrameFileReader(scratch.path("run/results.h5")), InputError);  // no frame yet
     for (int i = 0; i < 3; ++i) writer.add_frame(make_sample_frame(2, i));
+    writer.flush();
     // As another process would find them now.
     std::filesystem::copy_file(scratch.path("run/results.h5"), scratch.path("copy.h5"));
     CHECK(FrameFileReader(scratch.path("copy.h5")).n_frames() == 3);
@@ -197,6 +204,7 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
     summary.time_step = 1e-5;
     summary.energy.residual = -std::numeric_limits<double>::infinity();
     summary.stages = {{"forces", 0.1}, {"contact", 1e22}};
+    summary.writer_seconds = 0.25;
     summary.warnings = {{"grain 3 left the domain (step 7)", 2}};
     writer.finish(summary);
     CHECK(python_accepts(
@@ -205,10 +213,11 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
         "assert s[\"wall_seconds\"] is None and s[\"energy\"][\"residual\"] is None; "
         "assert s[\"time_step\"] == 1e-5 and s[\"stages\"][\"contact\"] == 1e22; "
         "assert s[\"warnings\"] == [{\"text\": \"grain 3 left the domain (step 7)\", \"count\": 2}]; "
+        "assert s[\"writer_seconds\"] == 0.25; "
         "assert set(s) == set(\"version title outcome dimension threads instructions deck_hash state_hash "
         "steps "
         "n_particles n_bonds n_grains simulated_time time_step stable_step wall_seconds "
-        "ns_per_particle_step peak_memory_bytes stages contact_per_step energy momentum_error "
+        "ns_per_particle_step peak_memory_bytes stages writer_seconds contact_per_step energy momentum_error "
         "warnings\".split())",
         scratch.path("run/summary.json")));
 }
@@ -276,6 +285,7 @@ TEST_CASE("ResultWriter: a disk that fills up during the run is named, and what 
     const std::string message = message_of([&] {
         ResultWriter writer({.directory = disk + "/run"});
         for (int i = 0; i < 1000; ++i) writer.add_frame(make_sample_frame(2, i));
+        writer.flush();
     });
     CHECK(contains(message, "cannot write: No space left on device"));
     CHECK(contains(message, disk + "/run/results."));
@@ -286,12 +296,16 @@ TEST_CASE("ResultWriter: results deleted during the run are noticed") {
     const ScratchDirectory scratch;
     ResultWriter writer({.directory = scratch.path("run")});
     writer.add_frame(make_sample_frame(2, 0));
+    writer.flush();
     std::filesystem::remove_all(scratch.path("run"));
     CHECK(contains(message_of([&] { writer.log("line"); }), "run.log: cannot write: the file was deleted"));
-    CHECK(
-        contains(message_of([&] { writer.add_frame(make_sample_frame(2, 1)); }), "results.h5: cannot write"));
+    CHECK(contains(message_of([&] {
+                       writer.add_frame(make_sample_frame(2, 1));
+                       writer.flush();
+                   }),
+                   "results.h5: cannot write: the file was deleted"));
     CHECK(contains(message_of([&] { writer.write_text("deck.yaml", "a: 1"); }), "No such file or directory"));
-    CHECK(contains(message_of([&] { writer.finish({}); }), "history.csv: cannot write"));
+    CHECK(contains(message_of([&] { writer.finish({}); }), "results.h5: cannot write"));
 }
 
 TEST_CASE("ResultWriter: no temporary file is left") {

@@ -94,10 +94,10 @@ TEST_CASE("Program: run writes its results and says where") {
                              "run.log", "deck.resolved.yaml"})
         CHECK_MESSAGE(std::filesystem::exists(out + "/" + name), name);
     const std::string summary = read_file(out + "/summary.json");
-    for (const char* key :
-         {"\"state_hash\"", "\"n_grains\": 1", "\"n_particles\"", "\"n_bonds\"", "\"steps\"",
-          "\"wall_seconds\"", "\"ns_per_particle_step\"", "\"stages\"", "\"energy\"", "\"residual_relative\"",
-          "\"momentum_error\"", "\"linear\"", "\"angular\"", "\"outcome\": \"done\"", "\"threads\": 1"})
+    for (const char* key : {"\"state_hash\"", "\"n_grains\": 1", "\"n_particles\"", "\"n_bonds\"",
+                            "\"steps\"", "\"wall_seconds\"", "\"writer_seconds\"", "\"ns_per_particle_step\"",
+                            "\"stages\"", "\"energy\"", "\"residual_relative\"", "\"momentum_error\"",
+                            "\"linear\"", "\"angular\"", "\"outcome\": \"done\"", "\"threads\": 1"})
         CHECK_MESSAGE(contains(summary, key), key);
 
     // The resolved deck is a deck of the same run.
@@ -109,7 +109,8 @@ TEST_CASE("Program: run writes its results and says where") {
     CHECK_FALSE(contains(result.out, "ns/particle"));
     const Result profiled = quern(folder, {"run", deck, "--profile", "-o", again});
     CHECK(profiled.code == 0);
-    for (const char* line : {"internal_forces", "contact nodes", "contact searches", "kB a particle"})
+    for (const char* line :
+         {"internal_forces", "writer", "contact nodes", "contact searches", "kB a particle"})
         CHECK_MESSAGE(contains(profiled.out, line), line);
 
     // --set reaches the run.
@@ -156,6 +157,19 @@ TEST_CASE("Program: output that cannot be written ends with 4") {
     std::filesystem::create_directories(deck + ".full");
     std::filesystem::create_symlink("/dev/full", deck + ".full/history.csv");
     check_failure(quern(folder, {"run", deck, "-o", deck + ".full"}), 4, "history.csv");
+}
+
+TEST_CASE("Program: results that are deleted during the run end it with 4") {
+    const TempFolder folder;
+    const std::string deck = folder.write("deck.yaml", falling);
+    const std::string out = deck + ".out";
+    const Program program(folder, {"run", deck, "--set", "time.end=1000", "--set", "output.interval=0.01",
+                                   "--set", "output.history_interval=0.01", "--threads", "2", "-o", out});
+    while (!std::filesystem::exists(out + "/results.xdmf") ||
+           !contains(read_file(out + "/results.xdmf"), "frame 3"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::filesystem::remove_all(out);
+    check_failure(program.wait(), 4, "cannot write: the file was deleted during the run");
 }
 
 TEST_CASE("Program: an interrupt ends the run cleanly") {
