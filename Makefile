@@ -3,7 +3,7 @@ PRESET ?= release
 BUILD  := build/$(PRESET)
 JOBS   ?= $(shell nproc)
 
-.PHONY: all build packages demo test bench clang debug asan tsan format check-format clean help
+.PHONY: all build packages demo test bench bench-long bench-instructions bench-docs clang debug asan tsan format check-format clean help
 
 all: build            ## build (PRESET=release): build/release/quern
 
@@ -24,8 +24,19 @@ demo: build           ## the disk on the inclined plane: run, pictures, errors a
 test: build           ## build and run all tests
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
 
-bench: build          ## ns per bond, per particle-step and per stage
-	$(BUILD)/quern_bench -o out/bench
+REVISION = $$(git describe --always --dirty)
+
+bench: build          ## kernels, stages, whole problems: table, out/bench/bench.json, bench.png
+	$(BUILD)/quern_bench -o out/bench --revision "$(REVISION)"
+
+bench-long: build     ## the same with 10^4 and 10^5 disks, 1000 spheres, one and two threads
+	$(BUILD)/quern_bench -o out/bench --long --revision "$(REVISION)"
+
+bench-instructions: build  ## instructions counted by callgrind: out/bench/instructions.json
+	tests/benchmark/instructions.py $(BUILD)/quern_count -o out/bench --revision "$(REVISION)"
+
+bench-docs:           ## out/bench into docs/: tables of performance.md, picture
+	tests/benchmark/docs.py out/bench
 
 clang debug asan tsan:  ## build with another preset
 	$(MAKE) build PRESET=$@

@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Puts what the benchmark has measured into docs/: tables into performance.md, and its picture.
+
+    docs.py FOLDER         FOLDER: of bench.json, bench.png and, if counted, instructions.json
+
+A table stands between the lines "<!-- bench: NAME -->" and "<!-- end -->"; what is between them is replaced.
+"""
+
+import json
+import pathlib
+import re
+import shutil
+import sys
+
+docs = pathlib.Path(__file__).resolve().parents[2] / "docs"
+
+
+def table(head, rows):
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def whole(number):
+    return f"{number:,.0f}".replace(",", " ")
+
+
+def machine(report):
+    about = report["machine"]
+    text = (f"{about['processor']}, {about['cores']} cores, {about['instructions']}, L2 {about['cache_l2']}, "
+            f"L3 {about['cache_l3']}; {about['compiler']}; revision {about['revision']}, "
+            f"load at the start {' '.join(about['load_at_start'].split()[:3])}.\n\n")
+    rows = [[str(r["threads"]), f"{r['triad_gb_per_s']:.1f}", f"{r['triad_cache_gb_per_s']:.1f}",
+             f"{r['fma_gflop_per_s']:.0f}"] for r in report["rooflines"]]
+    return text + table(["threads", "triad in memory [GB/s]", "triad in cache [GB/s]", "FMA [GFlop/s]"], rows)
+
+
+def problems(report):
+    by_name = {(e["name"], e["threads"]): e for e in report["entries"]}
+    rows = []
+    for e in report["entries"]:
+        if e["kind"] != "problem":
+            continue
+        def stage(name):
+            return by_name.get((f"{e['name']}: {name}", e["threads"]))
+        def cost(name):
+            s = stage(name)
+            return f"{s['median'] * s['count'] / e['count']:.1f}" if s else "-"
+        sizes = e["sizes"]
+        rows.append([e["name"], str(e["threads"]), whole(e["count"]), f"{stage('force')['median']:.2f}",
+                     *(cost(name) for name in ("force", "kick", "contact", "drift")), f"{e['median']:.1f}",
+                     f"{50 * e['spread']:.0f} %", f"{1e-6 * e['median'] * e['count']:.3g}",
+                     f"{100 * e['roofline']:.0f} %",
+                     f"{1e-3 * e['bytes_per_particle']:.2f}" if "bytes_per_particle" in e else "-",
+                     f"{sizes['speed_up']:.2f}" if "speed_up" in sizes else "-"])
+    return table(["problem", "threads", "particles", "ns per bond", "force", "kick", "contact", "drift", "step",
+                  "+-", "ms a step", "roof", "kB a particle", "speed-up"], rows)
+
+
+def kernels(report):
+    rows = [[e["name"], e["unit"], whole(e["count"]), f"{e['median']:.3g}", f"{50 * e['spread']:.0f} %",
+             f"{e['bytes']:.1f}" if "bytes" in e else "-", f"{e['flops']:.0f}" if "flops" in e else "-",
+             f"{100 * e['roofline']:.0f} %" if "roofline" in e else "-"]
+            for e in report["entries"] if e["kind"] == "kernel"]
+    return table(["kernel", "unit", "units a call", "ns", "+-", "bytes", "flops", "roof"], rows)
+
+
+def instructions(report):
+    rows = [[e["name"], e["unit"] + (" and step" if e["kind"] == "problem" else ""), whole(e["count"]),
+             f"{e['median']:.1f}"] for e in report["entries"]]
+    return table(["", "unit", "units", "instructions"], rows)
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    folder, page = pathlib.Path(sys.argv[1]), docs / "performance.md"
+    text = page.read_text(encoding="utf-8")
+    makers = {"bench.json": (machine, problems, kernels), "instructions.json": (instructions,)}
+    for name, tables in makers.items():
+        if not (folder / name).exists():
+            print(f"{folder / name} is missing: its tables stay as they are")
+            continue
+        report = json.loads((folder / name).read_text(encoding="utf-8"))
+        for make in tables:
+            place = re.compile(rf"(<!-- bench: {make.__name__} -->\n).*?(<!-- end -->)", re.DOTALL)
+            if not place.search(text):
+                sys.exit(f"docs.py: error: {page} has no place for the table '{make.__name__}'")
+            text = place.sub(lambda found: found[1] + "\n" + make(report) + "\n\n" + found[2], text)
+    page.write_text(text, encoding="utf-8")
+    if (folder / "bench.png").exists():
+        shutil.copy(folder / "bench.png", docs / "bench.png")
+    print(f"{page} written")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,74 @@
+#include "tests/benchmark/kernels.hpp"
+
+#include "src/deck/read_deck.hpp"
+
+namespace quern::bench {
+
+namespace {
+
+/// Hands the time of every repetition to a function.
+class Collector : public benchmark::BenchmarkReporter {
+  public:
+    explicit Collector(std::function<void(double)> take) : take_(std::move(take)) {}
+    bool ReportContext(const Context&) override { return true; }
+    void ReportRuns(const std::vector<Run>& runs) override {
+        for (const Run& run : runs)
+            if (run.run_type == Run::RT_Iteration)
+                take_(run.GetAdjustedRealTime() / benchmark::GetTimeUnitMultiplier(run.time_unit) * 1e9);
+    }
+
+  private:
+    std::function<void(double)> take_;
+};
+
+}  // namespace
+
+void KernelSet::add(const Entry& what, Body body, Timing timing) {
+    kernels_.push_back({what, std::move(body), timing});
+    kernels_.back().entry.kind = "kernel";
+}
+
+std::vector<Entry> KernelSet::run(double min_time, int repetitions) {
+    std::vector<Entry> entries;
+    for (Kernel& kernel : kernels_) {
+        benchmark::internal::Benchmark* const one =
+            benchmark::RegisterBenchmark(kernel.entry.name.c_str(), kernel.body);
+        one->Repetitions(repetitions);
+        if (kernel.timing.calls > 0)
+            one->Iterations(kernel.timing.calls);
+        else
+            one->MinTime(min_time);
+        if (kernel.timing.manual)
+            one->UseManualTime();
+        else
+            one->UseRealTime();
+        Collector collector([&](double ns) { kernel.entry.ns.push_back(ns / kernel.entry.count); });
+        benchmark::RunSpecifiedBenchmarks(&collector);
+        benchmark::ClearRegisteredBenchmarks();
+        entries.push_back(kernel.entry);
+    }
+    kernels_.clear();
+    return entries;
+}
+
+template <int Dim>
+std::shared_ptr<Stage<Dim>> make_stage(const std::string& deck_file,
+                                       const std::vector<std::string>& overrides, int steps) {
+    const Deck deck = read_deck(deck_file, overrides);
+    auto stage = std::make_shared<Stage<Dim>>();
+    stage->scene = make_scene<Dim>(deck);
+    set_initial_velocities(deck, *stage->scene);
+    stage->now.dt = 0.6 * stage->scene->stable_step();
+    stage->now.grain_impulse.assign(stage->scene->grains.size(), Vec<Dim>::Zero());
+    stage->now.wall_impulse.assign(stage->scene->walls.size(), Vec<Dim>::Zero());
+    for (int k = 0; k < steps; ++k) {
+        kick(*stage->scene, stage->now);
+        drift(*stage->scene, stage->now);
+    }
+    return stage;
+}
+
+template std::shared_ptr<Stage<2>> make_stage<2>(const std::string&, const std::vector<std::string>&, int);
+template std::shared_ptr<Stage<3>> make_stage<3>(const std::string&, const std::vector<std::string>&, int);
+
+}  // namespace quern::bench
