@@ -5,6 +5,7 @@
 // order, a line "kind|name|unit|units" each.
 #include <fmt/format.h>
 
+#include "grid/error.hpp"
 #include "grid/parallel.hpp"
 #include "src/sim/internal_forces.hpp"
 #include "src/sim/observe.hpp"
@@ -109,6 +110,11 @@ void count_all() {
 
 int main() {
     quern::parallel::set_threads(1);
-    quern::bench::count_all();
-    return 0;
+    try {
+        quern::bench::count_all();
+        return 0;
+    } catch (const quern::InputError& error) {
+        fmt::print(stderr, "quern_count: error: {}\n", error.what());
+        return quern::InputError::exit_code;
+    }
 }
