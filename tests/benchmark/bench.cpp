@@ -21,6 +21,7 @@ namespace {
 
 struct Options {
     std::string directory = "out/bench", revision = "unknown";
+    std::string only;  ///< part of a name; empty: everything
     bool all = false;
 };
 
@@ -38,7 +39,8 @@ class Bench {
         fmt::print("\n{}", table_head());
         run_kernels();
         for (const Problem& problem : make_problems(BENCH_DIR, options_.all))
-            for (const int n : threads) add(with_speed_up(run_problem(problem, n)));
+            if (problem.name.find(options_.only) != std::string::npos)
+                for (const int n : threads) add(with_speed_up(run_problem(problem, n)));
         create_directory(options_.directory);
         write_whole_file(options_.directory + "/bench.json", report_json(report_));
         draw_report(report_, options_.directory + "/bench.png");
@@ -59,7 +61,7 @@ class Bench {
         KernelSet set;
         for (const auto add_kernels : {add_force_kernels, add_contact_kernels, add_step_kernels}) {
             add_kernels(BENCH_DIR, set);
-            add(set.run(0.03, 7));
+            add(set.run(options_.only, 0.03, 7));
         }
     }
 
@@ -95,6 +97,7 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--revision", options.revision, "Of the source, to be written into bench.json")
         ->capture_default_str();
+    app.add_option("--only", options.only, "Kernels and problems with this in their names");
     app.add_flag("--long", options.all, "Also 10^4 and 10^5 disks, 1000 spheres, and two threads");
     CLI11_PARSE(app, argc, argv);
     try {

@@ -24,6 +24,10 @@ def whole(number):
     return f"{number:,.0f}".replace(",", " ")
 
 
+def short(number):
+    return whole(number) if number >= 1000 else f"{number:.3g}"
+
+
 def machine(report):
     about = report["machine"]
     text = (f"{about['processor']}, {about['cores']} cores, {about['instructions']}, L2 {about['cache_l2']}, "
@@ -48,16 +52,16 @@ def problems(report):
         sizes = e["sizes"]
         rows.append([e["name"], str(e["threads"]), whole(e["count"]), f"{stage('force')['median']:.2f}",
                      *(cost(name) for name in ("force", "kick", "contact", "drift")), f"{e['median']:.1f}",
-                     f"{50 * e['spread']:.0f} %", f"{1e-6 * e['median'] * e['count']:.3g}",
-                     f"{100 * e['roofline']:.0f} %",
+                     f"{50 * e['spread']:.0f} %", short(1e-6 * e["median"] * e["count"]),
+                     f"{100 * e['roofline']:.0f} %", f"{100 * sizes['cpu_share']:.0f} %",
                      f"{1e-3 * e['bytes_per_particle']:.2f}" if "bytes_per_particle" in e else "-",
                      f"{sizes['speed_up']:.2f}" if "speed_up" in sizes else "-"])
     return table(["problem", "threads", "particles", "ns per bond", "force", "kick", "contact", "drift", "step",
-                  "+-", "ms a step", "roof", "kB a particle", "speed-up"], rows)
+                  "+-", "ms a step", "roof", "core", "kB a particle", "speed-up"], rows)
 
 
 def kernels(report):
-    rows = [[e["name"], e["unit"], whole(e["count"]), f"{e['median']:.3g}", f"{50 * e['spread']:.0f} %",
+    rows = [[e["name"], e["unit"], whole(e["count"]), short(e["median"]), f"{50 * e['spread']:.0f} %",
              f"{e['bytes']:.1f}" if "bytes" in e else "-", f"{e['flops']:.0f}" if "flops" in e else "-",
              f"{100 * e['roofline']:.0f} %" if "roofline" in e else "-"]
             for e in report["entries"] if e["kind"] == "kernel"]

@@ -28,6 +28,8 @@ std::string counted(double value, const char* format) {
 std::string note(const Entry& e) {
     if (e.kind != "problem") return "";
     std::string text = fmt::format("{:.3g} ms a step", 1e-6 * e.median() * e.count);
+    if (e.size("cpu_share") < 0.95)
+        text += fmt::format(", {:.0f} % of the core", 100.0 * e.size("cpu_share"));
     if (e.memory > 0.0) text += fmt::format(", {:.2f} kB a particle", 1e-3 * e.memory);
     if (e.size("speed_up") > 0.0) text += fmt::format(", {:.2f} times one thread", e.size("speed_up"));
     return text;

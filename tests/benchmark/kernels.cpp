@@ -28,9 +28,10 @@ void KernelSet::add(const Entry& what, Body body, Timing timing) {
     kernels_.back().entry.kind = "kernel";
 }
 
-std::vector<Entry> KernelSet::run(double min_time, int repetitions) {
+std::vector<Entry> KernelSet::run(const std::string& only, double min_time, int repetitions) {
     std::vector<Entry> entries;
     for (Kernel& kernel : kernels_) {
+        if (kernel.entry.name.find(only) == std::string::npos) continue;
         benchmark::internal::Benchmark* const one =
             benchmark::RegisterBenchmark(kernel.entry.name.c_str(), kernel.body);
         one->Repetitions(repetitions);

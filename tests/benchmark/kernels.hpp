@@ -24,8 +24,8 @@ class KernelSet {
     /// `what`: everything but the times; the body is one call.
     void add(const Entry& what, Body body, Timing timing);
     void add(const Entry& what, Body body) { add(what, std::move(body), {}); }
-    /// Medians over `repetitions` of at least `min_time` [s] each. Empties the set.
-    std::vector<Entry> run(double min_time, int repetitions);
+    /// Kernels with `only` in their names: `repetitions` of at least `min_time` [s] each. Empties the set.
+    std::vector<Entry> run(const std::string& only, double min_time, int repetitions);
 
   private:
     struct Kernel {

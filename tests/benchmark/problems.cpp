@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 #include "src/deck/read_deck.hpp"
 #include "tests/benchmark/kernels.hpp"
@@ -45,6 +46,8 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
         e->count = n;
     }
 
+    double all_seconds = 0.0;
+    const std::clock_t cpu_start = std::clock();
     const int steps = std::max(least_steps, static_cast<int>(particle_steps / n));
     for (int block = 0; block < blocks; ++block) {
         now.stages = {};
@@ -55,6 +58,7 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
             drift(scene, now);
         }
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        all_seconds += seconds;
         const double scale = 1e9 / (n * steps);
         step.ns.push_back(scale * seconds);
         force.ns.push_back(scale * n / force.count * now.stages.internal_forces);
@@ -62,6 +66,7 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
         contact.ns.push_back(scale * now.stages.contact);
         drift_stage.ns.push_back(scale * now.stages.drift);
     }
+    const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
     const double per_step = 1.0 / steps;
     step.memory = memory.bytes() / n;
     step.sizes = {{"grains", static_cast<double>(scene.grains.size())},
@@ -70,7 +75,8 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
                   {"contact_nodes", per_step * static_cast<double>(now.contact_nodes)},
                   {"rows", per_step * static_cast<double>(now.contacts)},
                   {"sweeps", per_step * static_cast<double>(now.sweeps)},
-                  {"searches", per_step * static_cast<double>(now.searches)}};
+                  {"searches", per_step * static_cast<double>(now.searches)},
+                  {"cpu_share", cpu_seconds / (threads * all_seconds)}};
     std::vector<Entry> entries{step, force, kick_stage};
     if (scene.contact) {
         step.bytes += contact.bytes;
