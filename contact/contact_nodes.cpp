@@ -1,6 +1,5 @@
 #include "contact/contact_nodes.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
 #include <climits>
@@ -12,29 +11,11 @@ namespace quern {
 
 namespace {
 
-/// Below this smallest moment of inertia [m h^2] a slot is a point or a line and does not turn.
-constexpr double degenerate_inertia = 1e-3;
 constexpr double furthest_candidate = 1.5;  ///< reach of the quadratic functions [h]
 /// Contact may make a body this much faster than what moves without it.
 constexpr double faster_by_contact = 2.0;
 /// The more steps between two choices, the more nodes are awake that need not be.
 constexpr double steps_between_choices = 4.0;
-
-bool invert_inertia(const Mat<2>& second, double m, double h, Eigen::Matrix<double, 1, 1>& Y) {
-    const double inertia = second.trace();
-    const bool usable = m > 0.0 && inertia >= degenerate_inertia * m * h * h;
-    Y(0, 0) = usable ? 1.0 / inertia : 0.0;
-    return usable;
-}
-
-bool invert_inertia(const Mat<3>& second, double m, double h, Mat<3>& Y) {
-    const Mat<3> inertia = second.trace() * Mat<3>::Identity() - second;
-    Eigen::SelfAdjointEigenSolver<Mat<3>> eigen;
-    eigen.computeDirect(inertia, Eigen::EigenvaluesOnly);
-    const bool usable = m > 0.0 && eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
-    Y = usable ? Mat<3>(inertia.inverse()) : Mat<3>(Mat<3>::Zero());
-    return usable;
-}
 
 template <int Dim>
 bool lower_first(const Vec<Dim>& a, const Vec<Dim>& b) {
@@ -368,53 +349,24 @@ void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene) {
 }
 
 template <int Dim>
+double ContactNodes<Dim>::distance_to_surface(const ContactScene<Dim>& scene, const Site& site) const {
+    const Grain<Dim>& grain = scene.grains[site.grain];
+    const Vec<Dim> x_node = grid_.node_position(site.index);
+    double least = furthest_candidate * grid_.h();
+    for (const Candidate candidate : candidates_of(site)) {
+        if (candidate >= 0) continue;
+        const int p = grain.first + grain.shape->surface[-1 - candidate].node;
+        least = std::min(least, (scene.x[p] - x_node).cwiseAbs().maxCoeff());
+    }
+    return std::max(least / grid_.h() - 1.0, 0.0);
+}
+
+template <int Dim>
 void ContactNodes<Dim>::fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
                                   Support<Dim>* support) const {
-    const double h = grid_.h();
-    const Grain<Dim>& grain = scene.grains[site.grain];
-    const SurfacePoint<Dim>* const surface = grain.shape->surface.data();
-    const Candidate* const candidate = candidates_[site.grain].data() + site.candidate;
-    const Vec<Dim> x_node = grid_.node_position(site.index);
-    const Vec<Dim> index = site.index.template cast<double>();
-    int n = 0;
-    double volume = 0.0, m = 0.0, away = furthest_candidate - 1.0;
-    Vec<Dim> gradient = Vec<Dim>::Zero(), xb = Vec<Dim>::Zero();
-    for (int k = 0; k < site.n_candidates; ++k) {
-        const int on_surface = candidate[k] < 0 ? -1 - candidate[k] : -1;
-        const int p = grain.first + (on_surface >= 0 ? surface[on_surface].node : candidate[k]);
-        const Vec<Dim> t = grid_.in_cells(scene.x[p]) - index;
-        const double distance = t.cwiseAbs().maxCoeff();
-        if (on_surface >= 0) away = std::min(away, std::max(distance - 1.0, 0.0));
-        if (distance >= furthest_candidate) continue;
-        const double V = scene.volume[p];
-        gradient -= V / h * quadratic_gradient<Dim>(t);  // by the node: minus by the point
-        if (t.minCoeff() < -1.0 || t.maxCoeff() >= 1.0) continue;
-        double N = 1.0;
-        for (int a = 0; a < Dim; ++a) N *= 1.0 - std::abs(t[a]);
-        const double w = options_.nodal ? N : (on_surface >= 0 ? 1.0 : options_.interior_weight) * N * N;
-        const Vec<Dim> d = scene.x[p] - x_node;
-        const double mw = scene.mass[p] * w;
-        support[n++] = {p, on_surface, N, w, mw, d};
-        volume += N * V;
-        m += mw;
-        xb += mw * d;
-    }
-    if (m > 0.0) xb /= m;
-    Mat<Dim> second = Mat<Dim>::Zero();
-    for (int k = 0; k < n; ++k) {
-        const Vec<Dim> r = support[k].d - xb;
-        second += support[k].mw * r * r.transpose();
-    }
     slot.grain = site.grain;
     slot.index = site.index;
-    slot.support = support;
-    slot.n_support = n;
-    slot.volume = volume;
-    slot.away = away;
-    slot.gradient = gradient;
-    slot.m = m;
-    slot.xb = xb;
-    slot.rotates = options_.rotation && invert_inertia(second, m, h, slot.Y);
+    quern::fill_slot(scene, grid_, options_.weights, candidates_of(site), slot, support);
 }
 
 template class ContactNodes<2>;

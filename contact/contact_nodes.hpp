@@ -21,7 +21,7 @@
 #include <limits>
 
 #include "contact/contact.hpp"
-#include "contact/slot.hpp"
+#include "contact/fill_slot.hpp"
 #include "grid/node_pages.hpp"
 #include "grid/parallel.hpp"
 
@@ -29,13 +29,11 @@ namespace quern {
 
 /// Options of the search, fixed for a run.
 struct ContactNodeOptions {
-    bool all_nodes = false;        ///< every node of every grain is kept (flip coupling)
-    bool all_particles = false;    ///< interior particles make contact nodes as well (seed rule)
-    double wall_reach = 0.75;      ///< nodes nearer to a wall than this have a slot [h]
-    bool nodal = false;            ///< w = N: slots carry nodal momentum (flip coupling, seed rule)
-    double interior_weight = 1.0;  ///< q, unless nodal
-    bool rotation = true;          ///< slots turn
-    double skin = 0.0;             ///< a search lasts until something has moved this far [h]
+    bool all_nodes = false;      ///< every node of every grain is kept (flip coupling)
+    bool all_particles = false;  ///< interior particles make contact nodes as well (seed rule)
+    double wall_reach = 0.75;    ///< nodes nearer to a wall than this have a slot [h]
+    SlotWeights weights;         ///< nodal: slots carry nodal momentum (flip coupling, seed rule)
+    double skin = 0.0;           ///< a search lasts until something has moved this far [h]
 };
 
 template <int Dim>
@@ -109,8 +107,6 @@ class ContactNodes {
         int candidate;      ///< first of the particles of the grain that may come near before the next search
         int n_candidates;
     };
-    /// A particle of a grain: its number there, or -1 - its number on the surface.
-    using Candidate = std::int32_t;
     struct Page {
         std::size_t place;  ///< in the grid
         int number;         ///< in marks_
@@ -131,6 +127,11 @@ class ContactNodes {
     void make_sites();
     void list_candidates(const ContactScene<Dim>& scene, int grain, Scratch& scratch);
     void wake();
+    /// How far the nearest surface particle is from having the node in its support [h].
+    double distance_to_surface(const ContactScene<Dim>& scene, const Site& site) const;
+    std::span<const Candidate> candidates_of(const Site& site) const {
+        return {candidates_[site.grain].data() + site.candidate, static_cast<std::size_t>(site.n_candidates)};
+    }
     void fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
                    Support<Dim>* support) const;
     IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
@@ -190,6 +191,7 @@ void ContactNodes<Dim>::choose(const ContactScene<Dim>& scene, FreePath&& free_p
             Support<Dim>* support = scratch.support.data();
             for (std::size_t k = 0; k < sites.size(); ++k) {
                 fill_slot(scene, sites_[sites[k]], scratch.slots[k], support);
+                scratch.slots[k].away = distance_to_surface(scene, sites_[sites[k]]);
                 support += scratch.slots[k].n_support;
             }
             wake_at_[i] = travelled_ + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();

@@ -12,11 +12,11 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     nodes.all_nodes = options.coupling == GridCoupling::flip;
     nodes.all_particles = options.rule == GridRule::seed;
     nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
-    nodes.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
-    nodes.interior_weight = options.interior_weight;
+    nodes.weights.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
+    nodes.weights.interior_weight = options.interior_weight;
     // Only where an impulse needs surfaces that meet can nodes whose surfaces are apart be left out.
     const bool meets = options.rule == GridRule::pair && options.gap_test && !nodes.all_nodes;
-    nodes.rotation = options.rotation;
+    nodes.weights.rotation = options.rotation;
     nodes.skin = meets ? options.skin : 0.0;
     return nodes;
 }

@@ -29,7 +29,7 @@ struct Slot {
         Y;              ///< inverse of sum m_p w_p (|r|^2 1 - r r^T); 0: degenerate
     bool rotates;       ///< Y is usable
     double volume;      ///< sum N_p V_p
-    double away;        ///< how far the nearest surface particle is from having the node in its support [h]
+    double away = 0.0;  ///< while nodes are chosen: of the nearest surface particle from the support [h]
     Vec<Dim> gradient;  ///< sum V_p grad_a B(x_a - x_p), quadratic B-spline: points into the grain
 };
 

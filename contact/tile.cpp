@@ -202,10 +202,10 @@ template <int Dim>
 double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, bool jumps, bool thin, double h) {
     double path = away;
     if (tile) {
-        const double jump = jumps ? corner_jump : 0.0;
+        const double jump = jumps ? (thin ? 2.0 * corner_jump : corner_jump) : 0.0;
         const double gap = tile->gap / h - jump;
         const double beyond = std::abs(tile->point.dot(tile->normal)) / h - max_interface_distance - jump;
-        path = jumps && thin ? 0.0 : std::max({gap / gap_of_path, beyond / 2.0, 0.0});
+        path = std::max({gap / gap_of_path, beyond / 2.0, 0.0});
     }
     return path;
 }

@@ -45,10 +45,11 @@ void count_contact(const std::string& kind, const std::string& name, Stage<Dim>&
     GridContact<Dim> contact(scene.grid, options);
     std::vector<Vec<Dim>> v = scene.particles.v;
     const ContactScene<Dim> view{scene.grains,           scene.particles.x, scene.particles.mass,
-                                 scene.particles.volume, scene.walls,       &scene.friction};
+                                 scene.particles.volume, scene.walls,       &scene.friction,
+                                 scene.travelled};
     count(kind, name, "particle", scene.particles.size(), [&] {
         std::copy(scene.particles.v.begin(), scene.particles.v.end(), v.begin());
-        contact.add_impulses(view, {stage.now.dt, scene.arrays.v_before, v, {}});
+        contact.add_impulses(view, {stage.now.dt, scene.arrays.v_before, v, {}, stage.now.largest_speed});
     });
 }
 
@@ -96,7 +97,8 @@ void count_all() {
 
     const double n = plane->scene->particles.size();
     count("kernel", "state hash 2D", "particle", n, [&] { state_hash(*plane->scene); });
-    count("kernel", "frame 2D", "particle", n, [&] { make_frame(*plane->scene, plane->now); });
+    Frame frame;
+    count("kernel", "frame 2D", "particle", n, [&] { make_frame(*plane->scene, plane->now, frame); });
     count_problem<2>("disks 64, no contact", *make_stage<2>(disks, with("contact.rule=none"), 5));
     count_problem<2>("disks 64", *plane);
     count_problem<3>("spheres 12", *space);

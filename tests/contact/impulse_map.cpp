@@ -16,7 +16,7 @@ void for_each_slot(Visit&& visit) {
             CAPTURE(weight);
             World<Dim> world = make_pair_of_grains<Dim>(filling.shape, aims<Dim>(1)[0], 0.0, 1.0);
             ContactNodeOptions options;
-            options.interior_weight = weight;
+            options.weights.interior_weight = weight;
             ContactNodes<Dim> nodes(world.grid, options);
             fill_all(nodes, world.scene());
             REQUIRE(nodes.slots().size() > 4);
@@ -114,8 +114,8 @@ void check_weights() {
         for (const bool nodal : {false, true}) {
             World<Dim> world = make_pair_of_grains<Dim>(filling.shape, aims<Dim>(1)[0], 0.0, 1.0);
             ContactNodeOptions options;
-            options.nodal = nodal;
-            options.interior_weight = 0.3;
+            options.weights.nodal = nodal;
+            options.weights.interior_weight = 0.3;
             ContactNodes<Dim> nodes(world.grid, options);
             fill_all(nodes, world.scene());
             double worst = 0.0;
