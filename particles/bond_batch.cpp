@@ -1,8 +1,9 @@
 #include "particles/bond_batch.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
+
+#include "particles/batch_scratch.hpp"
 
 namespace quern {
 
@@ -20,28 +21,11 @@ extern const BatchLoops loops;
 
 namespace {
 
-struct alignas(64) Row {
-    double lane[batch_lanes];
-};
-
-/// Arrays of one thread, grown to the largest shape it has met and then kept.
-struct Scratch {
-    std::vector<Row> x, v, f, dilatation;
-    std::vector<int> broken_bond;
-    std::vector<std::uint8_t> broken_lanes;
-
-    template <class T>
-    static T* at_least(std::vector<T>& a, std::size_t size) {
-        if (a.size() < size) a.resize(size);
-        return a.data();
-    }
-};
-
 /// rows [n * Dim] = (source - its first entry, if `from_first`) over the scale of each lane. Lanes without a
 /// grain repeat the first.
 template <int Dim>
 void to_rows(const GrainBatch<Dim>& batch, std::span<const Vec<Dim>> GrainView<Dim>::*member, bool from_first,
-             Row* rows) {
+             LaneRow* rows) {
     for (int lane = 0; lane < batch_lanes; ++lane) {
         const GrainView<Dim>& grain = batch.grain[lane < batch.size ? lane : 0];
         const std::span<const Vec<Dim>> source = grain.*member;
@@ -97,38 +81,17 @@ template <int Dim>
 template <bool rate>
 BrokenBonds BondBatch<Dim>::add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
                                        double critical_stretch, double factor) const {
-    thread_local Scratch scratch;
+    thread_local BatchScratch scratch;
     const std::size_t n = first_.size() - 1;
-    Row* const x = Scratch::at_least(scratch.x, n * Dim);
-    Row* const f = Scratch::at_least(scratch.f, n * Dim);
-    Row* const v = rate ? Scratch::at_least(scratch.v, n * Dim) : nullptr;
-    Row* const dilatation = Scratch::at_least(scratch.dilatation, n);
-    to_rows<Dim>(batch, &GrainView<Dim>::x, true, x);
-    if constexpr (rate) to_rows<Dim>(batch, &GrainView<Dim>::v, false, v);
-
+    BatchState state =
+        make_batch_state<Dim, rate>(scratch, n, bond_.size(), batch.size, alive, critical_stretch);
+    to_rows<Dim>(batch, &GrainView<Dim>::x, true, scratch.x.data());
+    if constexpr (rate) to_rows<Dim>(batch, &GrainView<Dim>::v, false, scratch.v.data());
     const BatchTopology topology{static_cast<int>(n), first_.data(), partner_.data(), bond_.data(),
                                  node_.empty() ? nullptr : node_.data()};
-    BatchState state{};
-    state.x = x->lane;
-    state.v = rate ? v->lane : nullptr;
-    state.f = f->lane;
-    state.dilatation = dilatation->lane;
-    state.alive = alive.empty() ? nullptr : alive.data();
-    Row limit;
-    if (!rate && state.alive != nullptr && std::isfinite(critical_stretch)) {
-        const double longest = (1.0 + critical_stretch) * (1.0 + critical_stretch);
-        for (int lane = 0; lane < batch_lanes; ++lane)  // an empty lane owns no bits that could break
-            limit.lane[lane] = lane < batch.size ? longest : std::numeric_limits<double>::infinity();
-        state.limit = limit.lane;
-        const std::size_t most = 4 * bond_.size();  // the narrowest set goes through the bonds four times
-        state.broken_bond = Scratch::at_least(scratch.broken_bond, most);
-        state.broken_lanes = Scratch::at_least(scratch.broken_lanes, most);
-    }
-    if constexpr (rate)
-        (Dim == 2 ? loops_->viscous_2d : loops_->viscous_3d)(topology, state);
-    else
-        (Dim == 2 ? loops_->elastic_2d : loops_->elastic_3d)(topology, state);
+    run_loop<Dim, rate>(loops_->one_shape, topology, state);
 
+    const LaneRow* const f = scratch.f.data();
     for (int lane = 0; lane < batch.size; ++lane) {
         const double back = factor * std::pow(batch.grain[lane].scale, Dim - 1);
         Vec<Dim>* const out = batch.f[lane];

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "particles/batch_loops.hpp"
+#include "particles/batch_types.hpp"
 #include "particles/bond_kernel.hpp"
 #include "particles/instructions.hpp"
 

@@ -26,6 +26,7 @@ namespace quern {
 struct BondStiffness {
     std::vector<double> bond;  ///< [n_bonds] c
     std::vector<double> node;  ///< [n] g; empty: a model without dilatation
+    std::vector<double> end;   ///< [n] q, with c = k (q_i + q_j); empty where `node` is
 };
 
 struct BondSlots;  ///< the arrays of a kernel, as its loops want them

@@ -27,7 +27,8 @@ template <int Dim>
 void BondNetwork<Dim>::set_stiffness(BondStiffness stiffness) {
     stiffness_ = std::move(stiffness);
     fast_ = BondKernel<Dim>(bonds_, stiffness_);
-    if (kernel_.kernel == Kernel::fast) batch_ = BondBatch<Dim>(bonds_, stiffness_, kernel_.instructions);
+    if (kernel_.kernel == Kernel::fast && kernel_.batches)
+        batch_ = BondBatch<Dim>(bonds_, stiffness_, kernel_.instructions);
 
     const std::size_t n = bonds_.X.size();
     std::vector<double> mass(n * Dim);

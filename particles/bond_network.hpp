@@ -20,6 +20,7 @@ enum class Kernel { fast, reference };
 struct KernelChoice {
     Kernel kernel = Kernel::fast;
     Instructions instructions = Instructions::best;
+    bool batches = true;  ///< add_batch_forces will be called; false saves its table of bonds
 };
 
 /// Base of the bond models, not for use by itself. A grain of scale s is evaluated at y/s:
@@ -38,9 +39,9 @@ class BondNetwork {
     /// the power is -2 bond_damping times the energy of the rates, never positive.
     void add_damping_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;
 
-    /// Forces of up to eight grains at once, where Kernel::fast is chosen: what add_internal_forces adds,
-    /// after the bonds that are stretched too far have broken (cleared in `alive`, [n_bonds], empty: none
-    /// can).
+    /// Forces of up to eight grains at once, where Kernel::fast and `batches` are chosen: what
+    /// add_internal_forces adds, after the bonds that are stretched too far have broken (cleared in `alive`,
+    /// [n_bonds], empty: none can).
     BrokenBonds add_batch_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
         return batch_.add_elastic_forces(batch, alive, material_.critical_stretch);
     }
@@ -76,6 +77,7 @@ class BondNetwork {
     int n_bonds() const { return bonds_.n_bonds(); }   ///< undirected
     double horizon() const { return bonds_.horizon; }  ///< of scale 1 [m]
     const Bonds<Dim>& bonds() const { return bonds_; }
+    const BondStiffness& stiffness() const { return stiffness_; }
 
   protected:
     BondNetwork(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel);

@@ -11,18 +11,26 @@ namespace quern {
 
 /// Which bonds of a grain are intact: one bit of a byte a bond. The other bits of the bytes belong to the
 /// grains that share a batch with it (bond_batch.hpp). Made from bytes alone, it reads their lowest bit.
+/// `place` [n_bonds]: byte of each bond, where the batch has more bonds than the grain (union_batch.hpp).
 class BondBits {
   public:
     BondBits() = default;
-    BondBits(std::span<const std::uint8_t> bytes, int bit = 0) : bytes_(bytes), bit_(bit) {}
+    BondBits(std::span<const std::uint8_t> bytes, int bit = 0, const int* place = nullptr)
+        : bytes_(bytes), place_(place), bit_(bit) {}
     BondBits(const std::vector<std::uint8_t>& bytes) : BondBits(std::span(bytes)) {}
 
     bool empty() const { return bytes_.empty(); }  ///< all intact
-    bool operator[](int bond) const { return (bytes_[static_cast<std::size_t>(bond)] >> bit_ & 1) != 0; }
+    bool operator[](int bond) const {
+        const int byte = place_ == nullptr ? bond : place_[bond];
+        return (bytes_[static_cast<std::size_t>(byte)] >> bit_ & 1) != 0;
+    }
     std::span<const std::uint8_t> bytes() const { return bytes_; }
+    /// The bits of the same grain in other bytes.
+    BondBits in(std::span<const std::uint8_t> bytes) const { return {bytes, bit_, place_}; }
 
   private:
     std::span<const std::uint8_t> bytes_;
+    const int* place_ = nullptr;
     int bit_ = 0;
 };
 

@@ -19,6 +19,7 @@ Lps<Dim>::Lps(const Shape<Dim>& shape, const Material& material, const KernelCho
     BondStiffness stiffness;
     for (int i = 0; i < bonds.n_nodes(); ++i) {
         stiffness.node.push_back(n * b_ / (m_[i] * m_[i] * bonds.volume[i]));
+        stiffness.end.push_back(a_ / m_[i]);
         for (int k = bonds.first[i]; k < bonds.first[i + 1]; ++k) {
             const int j = bonds.partner[k];
             stiffness.bond.push_back(bonds.weight[k] * bonds.volume[i] * bonds.volume[j] *

@@ -23,9 +23,11 @@ struct SurfacePoint {
 template <int Dim>
 struct Shape {
     std::string name;
-    std::vector<Vec<Dim>> X;                 ///< [n] reference positions [m]; sum V X = 0
-    std::vector<double> volume;              ///< [n] nodal volumes [m^2 in 2D, m^3 in 3D], all > 0
-    double dx = 0.0;                         ///< particle spacing: (mean nodal volume)^(1/Dim) [m]
+    std::vector<Vec<Dim>> X;        ///< [n] reference positions [m]; sum V X = 0
+    std::vector<double> volume;     ///< [n] nodal volumes [m^2 in 2D, m^3 in 3D], all > 0
+    std::vector<IntVec<Dim>> cell;  ///< [n] cell of each node from the middle of the lattice, ascending
+                                    ///< with axis 0 fastest; empty: no lattice
+    double dx = 0.0;                ///< particle spacing: (mean nodal volume)^(1/Dim) [m]
     std::vector<SurfacePoint<Dim>> surface;  ///< ordered by node, at most one entry a node
     bool cornered = false;                   ///< has edges or corners: contact then filters by normal
     double radius = 0.0;                     ///< largest distance of the true surface from the centre [m]

@@ -151,6 +151,7 @@ Shape<Dim> make_lattice_shape(const Solid& solid, const Vec<Dim>& spacing) {
         if (distance > inside) {
             lattice.node[cell] = shape.n_nodes();
             shape.X.push_back(x);
+            shape.cell.push_back(lattice.index(cell) - lattice.n / 2);
             shape.volume.push_back(distance >= reach ? cell_volume
                                                      : solid.overlap(x - 0.5 * spacing, x + 0.5 * spacing));
         } else if (distance > -reach) {
