@@ -30,24 +30,21 @@ double energy_now(const Model& model, const GrainView<Dim>& view, const Vec<Dim>
     return energy;
 }
 
-/// The forces of one group of grains.
-template <int Dim, class Model>
-class Group {
+/// The forces of a task.
+template <int Dim>
+class TaskForces {
   public:
-    Group(Scene<Dim>& scene, const MaterialGroup<Dim>& group, const Model& model, double elapsed)
-        : scene_(scene), group_(group), model_(model), elapsed_(elapsed) {}
+    TaskForces(Scene<Dim>& scene, double elapsed) : scene_(scene), elapsed_(elapsed) {}
 
-    Broken compute() {
-        const std::size_t n = static_cast<std::size_t>(group_.last_grain - group_.first_grain);
-        if (!group_.batched)
-            return parallel::sum(
-                n, Broken{},
-                [&](std::size_t i) { return compute_grain(group_.first_grain + static_cast<int>(i)); }, 1);
-        return parallel::sum((n + batch_lanes - 1) / batch_lanes, Broken{},
-                             [&](std::size_t i) {
-                                 return compute_batch(group_.first_grain + batch_lanes * static_cast<int>(i));
-                             },
-                             1);
+    Broken compute(const ForceTask& task) const {
+        const MaterialGroup<Dim>& group = scene_.group_of(task.grain[0]);
+        if (task.union_batch >= 0) return compute_union(task, group, scene_.unions[task.union_batch]);
+        return std::visit(
+            [&](const auto& model) {
+                return task.alone ? compute_grain(task.grain[0], group, model)
+                                  : compute_batch(task, group, model);
+            },
+            group.model);
     }
 
   private:
@@ -61,45 +58,64 @@ class Group {
     double energy_of(int g, const GrainView<Dim>& view) const {
         const bool with_grid = scene_.contact && scene_.contact->moves_with_grid();
         const std::vector<Vec<Dim>>& v = with_grid ? scene_.arrays.drift : scene_.particles.v;
-        return energy_now<Dim>(model_, view, v.data() + scene_.grains[g].first, elapsed_);
+        return std::visit(
+            [&](const auto& model) {
+                return energy_now<Dim>(model, view, v.data() + scene_.grains[g].first, elapsed_);
+            },
+            scene_.group_of(g).model);
     }
 
-    Broken compute_grain(int g) {
+    /// Energy that the bonds of a grain set free between the bytes `intact` and now.
+    double released(int g, const GrainView<Dim>& view, std::span<const std::uint8_t> intact) const {
+        GrainView<Dim> before = view;
+        before.alive = view.alive.in(intact);
+        return energy_of(g, before) - energy_of(g, view);
+    }
+
+    template <class Model>
+    Broken compute_grain(int g, const MaterialGroup<Dim>& group, const Model& model) const {
         const GrainView<Dim> view = scene_.view(g);
         Broken broken;
-        if (group_.breakable) {
+        if (group.breakable) {
             thread_local std::vector<std::uint8_t> intact;
             intact.assign(view.alive.bytes().begin(), view.alive.bytes().end());
-            broken.count = model_.break_bonds(view, scene_.alive_of(g));
-            if (broken.count > 0) {
-                GrainView<Dim> before = view;
-                before.alive = BondBits(intact);
-                broken.released = energy_of(g, before) - energy_of(g, view);
-            }
+            broken.count = model.break_bonds(view, scene_.alive_of(g));
+            if (broken.count > 0) broken.released = released(g, view, intact);
         }
-        model_.add_internal_forces(view, zeroed(scene_.arrays.internal, g));
-        if (group_.damped) model_.add_damping_forces(view, zeroed(scene_.arrays.damping, g));
+        model.add_internal_forces(view, zeroed(scene_.arrays.internal, g));
+        if (group.damped) model.add_damping_forces(view, zeroed(scene_.arrays.damping, g));
         return broken;
     }
 
-    Broken compute_batch(int first) {
+    GrainBatch<Dim> gather(const ForceTask& task, std::vector<Vec<Dim>>& forces) const {
         GrainBatch<Dim> batch;
-        batch.size = std::min(batch_lanes, group_.last_grain - first);
+        batch.size = task.size;
         for (int lane = 0; lane < batch.size; ++lane) {
-            batch.grain[lane] = scene_.view(first + lane);
-            batch.f[lane] = zeroed(scene_.arrays.internal, first + lane).data();
+            batch.grain[lane] = scene_.view(task.grain[lane]);
+            batch.f[lane] = zeroed(forces, task.grain[lane]).data();
         }
-        const std::span<std::uint8_t> alive = scene_.alive_of(first);
-        const Broken broken = count(model_.add_batch_forces(batch, alive), batch, first, alive);
-        if (group_.damped) {
-            for (int lane = 0; lane < batch.size; ++lane)
-                batch.f[lane] = zeroed(scene_.arrays.damping, first + lane).data();
-            model_.add_batch_damping(batch, alive);
-        }
+        return batch;
+    }
+
+    template <class Model>
+    Broken compute_batch(const ForceTask& task, const MaterialGroup<Dim>& group, const Model& model) const {
+        const GrainBatch<Dim> batch = gather(task, scene_.arrays.internal);
+        const std::span<std::uint8_t> alive = scene_.alive_of(task.grain[0]);
+        const Broken broken = count(task, model.add_batch_forces(batch, alive), batch, alive);
+        if (group.damped) model.add_batch_damping(gather(task, scene_.arrays.damping), alive);
         return broken;
     }
 
-    Broken count(const BrokenBonds& torn, const GrainBatch<Dim>& batch, int first,
+    Broken compute_union(const ForceTask& task, const MaterialGroup<Dim>& group,
+                         const UnionBatch<Dim>& forces) const {
+        const GrainBatch<Dim> batch = gather(task, scene_.arrays.internal);
+        const std::span<std::uint8_t> alive = scene_.alive_of(task.grain[0]);
+        const Broken broken = count(task, forces.add_elastic_forces(batch, alive), batch, alive);
+        if (group.damped) forces.add_viscous_forces(gather(task, scene_.arrays.damping), alive);
+        return broken;
+    }
+
+    Broken count(const ForceTask& task, const BrokenBonds& torn, const GrainBatch<Dim>& batch,
                  std::span<const std::uint8_t> alive) const {
         Broken broken;
         if (torn.bond.empty()) return broken;
@@ -111,18 +127,13 @@ class Group {
             lanes |= torn.lanes[k];
             broken.count += __builtin_popcount(torn.lanes[k]);
         }
-        for (int lane = 0; lane < batch.size; ++lane) {
-            if ((lanes >> lane & 1U) == 0) continue;
-            GrainView<Dim> before = batch.grain[lane];
-            before.alive = BondBits(intact, lane);
-            broken.released += energy_of(first + lane, before) - energy_of(first + lane, batch.grain[lane]);
-        }
+        for (int lane = 0; lane < batch.size; ++lane)
+            if ((lanes >> lane & 1U) != 0)
+                broken.released += released(task.grain[lane], batch.grain[lane], intact);
         return broken;
     }
 
     Scene<Dim>& scene_;
-    const MaterialGroup<Dim>& group_;
-    const Model& model_;
     double elapsed_;
 };
 
@@ -130,13 +141,12 @@ class Group {
 
 template <int Dim>
 void compute_internal_forces(Scene<Dim>& scene, StepContext<Dim>& now) {
-    for (const MaterialGroup<Dim>& group : scene.groups) {  // one dispatch a group
-        const Broken broken = std::visit(
-            [&](const auto& model) { return Group(scene, group, model, now.part_done() * now.dt).compute(); },
-            group.model);
-        now.newly_broken += broken.count;
-        now.ledger.past.fracture += broken.released;
-    }
+    const TaskForces<Dim> forces(scene, now.part_done() * now.dt);
+    const Broken broken = parallel::sum(
+        scene.force_tasks.size(), Broken{},
+        [&](std::size_t i) { return forces.compute(scene.force_tasks[i]); }, 1);
+    now.newly_broken += broken.count;
+    now.ledger.past.fracture += broken.released;
 }
 
 template void compute_internal_forces<2>(Scene<2>&, StepContext<2>&);

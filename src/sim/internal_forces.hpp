@@ -1,4 +1,4 @@
-// Forces inside the grains, group by group: in batches of eight where a group is large enough.
+// Forces inside the grains, task by task: batches of eight, unions, single grains (force_plan.hpp).
 #pragma once
 
 #include "src/sim/step.hpp"

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <map>
 #include <tuple>
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
 #include "src/mesh/make_shape.hpp"
+#include "src/sim/force_plan.hpp"
 
 namespace quern {
 
@@ -43,8 +44,9 @@ CartesianGrid<Dim> make_grid(const GridDeck& deck) {
     return CartesianGrid<Dim>(vec<Dim>(deck.origin), deck.spacing, n, periodic);
 }
 
-KernelChoice kernel_choice(const ComputeDeck& deck) {
-    return {deck.kernel == ForceKernel::reference ? Kernel::reference : Kernel::fast, deck.instructions};
+KernelChoice kernel_choice(const ComputeDeck& deck, bool batches) {
+    return {deck.kernel == ForceKernel::reference ? Kernel::reference : Kernel::fast, deck.instructions,
+            batches};
 }
 
 GridContactOptions contact_options(const ContactDeck& deck) {
@@ -80,6 +82,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
                            index_of(deck.materials, deck.grains[id].material), id);
     std::sort(order.begin(), order.end());
     scene.grain_of_id.resize(static_cast<std::size_t>(n_grains));
+    std::map<std::pair<int, int>, int> group_size;
+    for (const auto& [shape_index, material_index, id] : order) ++group_size[{shape_index, material_index}];
     std::pair<int, int> previous{-1, -1};
     for (const auto& [shape_index, material_index, id] : order) {
         const GrainDeck& from = deck.grains[id];
@@ -87,7 +91,9 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         const Shape<Dim>& shape = *scene.shapes[shape_index];
         if (previous != std::pair{shape_index, material_index}) {
             previous = {shape_index, material_index};
-            MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute))};
+            const bool batched = makes_batches(deck.compute, group_size[previous]);
+            MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute, batched))};
+            group.batched = batched;
             group.first_grain = static_cast<int>(scene.grains.size());
             group.bond_damping = material.bond_damping;
             group.damped = material.bond_damping > 0.0;
@@ -129,26 +135,6 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         scene.n_bonds += static_cast<std::int64_t>(n_bonds);
         scene.grain_of_id[static_cast<std::size_t>(id)] = static_cast<int>(scene.grains.size());
         scene.grains.push_back(grain);
-    }
-}
-
-/// Which groups go by batches, and a bit for every bond that can break. Four grains are enough: a batch of
-/// four costs no more than four grains one by one.
-template <int Dim>
-void place_bonds(const Deck& deck, Scene<Dim>& scene) {
-    constexpr int least = 4;
-    scene.bond_bytes.resize(scene.grains.size());
-    for (MaterialGroup<Dim>& group : scene.groups) {
-        group.batched =
-            deck.compute.kernel == ForceKernel::automatic && group.last_grain - group.first_grain >= least;
-        if (!group.breakable) continue;
-        const std::size_t n_bonds =
-            static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
-        for (int g = group.first_grain; g < group.last_grain; ++g) {
-            const int lane = group.batched ? (g - group.first_grain) % batch_lanes : 0;
-            if (lane == 0) scene.alive.resize(scene.alive.size() + n_bonds, 0xff);
-            scene.bond_bytes[static_cast<std::size_t>(g)] = {scene.alive.size() - n_bonds, n_bonds, lane};
-        }
     }
 }
 
@@ -271,7 +257,7 @@ GrainView<Dim> Scene<Dim>::view(int grain) const {
     return {grains[grain].scale,
             {particles.x.data() + first, count},
             {particles.v.data() + first, count},
-            BondBits({alive.data() + bytes.begin, bytes.count}, bytes.bit)};
+            BondBits({alive.data() + bytes.begin, bytes.count}, bytes.bit, bytes.place)};
 }
 
 template <int Dim>
@@ -282,8 +268,8 @@ std::span<std::uint8_t> Scene<Dim>::alive_of(int grain) {
 
 template <int Dim>
 const MaterialGroup<Dim>& Scene<Dim>::group_of(int grain) const {
-    return *std::find_if(groups.begin(), groups.end(),
-                         [&](const auto& group) { return grain < group.last_grain; });
+    return *std::partition_point(groups.begin(), groups.end(),
+                                 [&](const auto& group) { return group.last_grain <= grain; });
 }
 
 template <int Dim>
@@ -324,7 +310,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
         scene->shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
     add_walls(deck, *scene);
     place_grains(deck, *scene);
-    place_bonds(deck, *scene);
+    plan_forces(deck, *scene);
     check_overlap(deck, *scene);
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();

@@ -11,6 +11,7 @@
 #include "contact/grid_contact.hpp"
 #include "particles/grains.hpp"
 #include "particles/peridynamic_model.hpp"
+#include "particles/union_batch.hpp"
 #include "src/deck/deck.hpp"
 
 namespace quern {
@@ -21,7 +22,7 @@ struct MaterialGroup {
     PeridynamicModel<Dim> model;
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
     bool damped = false, breakable = false;
-    bool batched = false;       ///< forces by batches of eight, in the order of the grains
+    bool batched = false;       ///< forces by batches of eight of its own, in the order of the grains
     double bond_damping = 0.0;  ///< [s]
     double density = 0.0;       ///< [kg/m^3]
 };
@@ -54,6 +55,15 @@ struct StepArrays {
 struct BondBytes {
     std::size_t begin = 0, count = 0;
     int bit = 0;
+    const int* place = nullptr;  ///< [n_bonds] byte of each bond; null: in their order
+};
+
+/// Grains whose bond forces are evaluated at once: one, a batch of one shape, or a union.
+struct ForceTask {
+    std::array<int, batch_lanes> grain{};
+    int size = 0;
+    bool alone = false;
+    int union_batch = -1;  ///< index into Scene::unions; -1: grains of one shape
 };
 
 template <int Dim>
@@ -63,11 +73,13 @@ struct Scene {
     CartesianGrid<Dim> grid;
     std::vector<std::unique_ptr<Shape<Dim>>> shapes;
     std::vector<MaterialGroup<Dim>> groups;
-    std::vector<Grain<Dim>> grains;  ///< sorted by group; Grain::id is the number in the deck
-    std::vector<int> grain_of_id;    ///< [n_grains] position of each deck number in `grains`
+    std::vector<UnionBatch<Dim>> unions;
+    std::vector<ForceTask> force_tasks;  ///< every grain once
+    std::vector<Grain<Dim>> grains;      ///< sorted by group; Grain::id is the number in the deck
+    std::vector<int> grain_of_id;        ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
     std::vector<Vec<Dim>> x_start;  ///< positions as placed [m]
-    /// Bonds of breakable grains. A grain has a bit of each of its bytes; those of a batch share the bytes.
+    /// Bonds of breakable grains. A grain has a bit in each of its bytes; those of a batch share the bytes.
     std::vector<std::uint8_t> alive;
     std::vector<BondBytes> bond_bytes;  ///< [n_grains] into `alive`
     std::int64_t n_bonds = 0;

@@ -56,6 +56,11 @@ TEST_CASE("Determinism: thirty grains in the plane, every method") {
     check_threads(packing, {"contact.rule=seed"}, 30);
 }
 
+TEST_CASE("Determinism: lattice grains of unlike size, which share unions and break") {
+    check_threads(unequal_deck, {}, 15);
+    CHECK(run_text(unequal_deck).summary.energy.fracture > 0.0);
+}
+
 TEST_CASE("Determinism: a small packing in space") {
     check_threads(space_deck + R"yaml(
 time: {end: 0.05}

@@ -1,0 +1,84 @@
+// Which grains are evaluated together, and that nobody can tell.
+#include "src/sim/force_plan.hpp"
+
+#include <set>
+
+#include "src/sim/observe.hpp"
+#include "tests/sim/decks.hpp"
+
+namespace quern::test {
+
+namespace {
+
+struct Outcome {
+    std::int64_t n_bonds = 0, newly_broken = 0;
+    double fracture = 0.0, elastic = 0.0;
+    Frame frame;
+};
+
+std::unique_ptr<Scene<2>> scene_of(const std::vector<std::string>& overrides) {
+    const TempFolder folder;
+    const Deck deck = read_deck(folder.write("deck.yaml", unequal_deck), overrides);
+    std::unique_ptr<Scene<2>> scene = make_scene<2>(deck);
+    set_initial_velocities(deck, *scene);
+    return scene;
+}
+
+Outcome advance(Scene<2>& scene, int steps) {
+    StepContext<2> now;
+    now.dt = 0.3 * scene.stable_step();
+    now.grain_impulse.assign(scene.grains.size(), Vec<2>::Zero());
+    now.wall_impulse.assign(scene.walls.size(), Vec<2>::Zero());
+    for (int k = 0; k < steps; ++k) {
+        kick(scene, now);
+        drift(scene, now);
+    }
+    return {scene.n_bonds, now.newly_broken, now.ledger.past.fracture, scene.elastic_energy(),
+            make_frame(scene, now)};
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+    double most = 0.0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("Force plan: every grain once; alike ones in batches, similar ones in unions, the bar alone") {
+    const auto scene = scene_of({});
+    std::multiset<int> seen;
+    std::vector<int> unions, batches, alone;
+    for (const ForceTask& task : scene->force_tasks) {
+        seen.insert(task.grain.begin(), task.grain.begin() + task.size);
+        (task.union_batch >= 0 ? unions : task.alone ? alone : batches).push_back(task.size);
+    }
+    CHECK(seen.size() == 15);
+    CHECK(std::set<int>(seen.begin(), seen.end()).size() == 15);
+    CHECK(unions == std::vector<int>{8});
+    CHECK(batches == std::vector<int>{4});
+    CHECK(alone == std::vector<int>{1, 1, 1});
+    for (const std::string kernel : {"single", "reference"}) {
+        const auto plain = scene_of({"compute.kernel=" + kernel});
+        CHECK(plain->unions.empty());
+        CHECK(plain->force_tasks.size() == 15);
+    }
+}
+
+TEST_CASE(
+    "Force plan: unions break the bonds that single grains break, and report the same energies and fields") {
+    const auto together = scene_of({}), single = scene_of({"compute.kernel=single"});
+    const Outcome a = advance(*together, 150), b = advance(*single, 150);
+    CHECK(a.n_bonds == b.n_bonds);
+    CHECK(a.newly_broken == b.newly_broken);
+    CHECK(b.newly_broken > 50);
+    CHECK(std::abs(a.fracture / b.fracture - 1.0) < 1e-9);  // measured 1.5e-14, bound 1e-9
+    CHECK(std::abs(a.elastic / b.elastic - 1.0) < 1e-9);    // measured 1.2e-13, bound 1e-9
+    CHECK(a.frame.damage == b.frame.damage);
+    CHECK(*std::max_element(b.frame.damage.begin(), b.frame.damage.end()) > 0.1);
+    const double largest = *std::max_element(b.frame.stress.begin(), b.frame.stress.end());
+    // measured 1.5e-11, bound 1e-9
+    CHECK(largest_difference(a.frame.stress, b.frame.stress) < 1e-9 * largest);
+}
+
+}  // namespace quern::test
