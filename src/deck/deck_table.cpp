@@ -22,9 +22,9 @@ Table<TimeDeck> time_table() {
 Table<ComputeDeck> compute_table() {
     using T = ComputeDeck;
     Table<T> t;
-    t.word(
-        "kernel", &T::kernel, {"auto", "single", "reference"},
-        "Bond forces: auto: batches of eight grains of a shape; single: one by one; reference: as printed");
+    t.word("kernel", &T::kernel, {"auto", "single", "reference"},
+           "Bond forces: auto: batches of eight grains of a shape, or of similar lattices; single: one by "
+           "one; reference: as printed");
     t.word("instructions", &T::instructions, {"auto", "avx512", "avx2", "plain"},
            "Instruction set of the batches; auto: the widest that this machine has");
     t.finish = [](T& compute, const Cursor& at, const Context&) {

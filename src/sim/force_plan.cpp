@@ -39,7 +39,7 @@ void place_bits(Scene<Dim>& scene, const ForceTask& task) {
 }
 
 /// Lattice grains outside of batches, those alike next to each other: by material, cells along the axes,
-/// nodes.
+/// bonds.
 template <int Dim>
 std::vector<int> sort_by_size(const Scene<Dim>& scene) {
     using Key = std::tuple<int, std::array<int, Dim>, int, int>;
@@ -48,6 +48,7 @@ std::vector<int> sort_by_size(const Scene<Dim>& scene) {
         const Grain<Dim>& grain = scene.grains[group.first_grain];
         const std::vector<IntVec<Dim>>& cells = grain.shape->cell;
         if (group.batched || cells.empty()) continue;
+        const int n_bonds = std::visit([](const auto& model) { return model.n_bonds(); }, group.model);
         IntVec<Dim> low = cells[0], high = cells[0];
         for (const IntVec<Dim>& cell : cells) {
             low = low.cwiseMin(cell);
@@ -56,7 +57,7 @@ std::vector<int> sort_by_size(const Scene<Dim>& scene) {
         std::array<int, Dim> extent;
         for (int a = 0; a < Dim; ++a) extent[a] = high[a] - low[a];
         for (int g = group.first_grain; g < group.last_grain; ++g)
-            keys.emplace_back(grain.material, extent, grain.count, g);
+            keys.emplace_back(grain.material, extent, n_bonds, g);
     }
     std::sort(keys.begin(), keys.end());
     std::vector<int> sorted;

@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -122,17 +124,22 @@ Field<Dim> linear_forces(const PeridynamicModel<Dim>& model, const Field<Dim>& u
     return f;
 }
 
+/// most = max(most, value), for good infinite once a value is no number.
+inline void raise(double& most, double value) {
+    if (!(value <= most)) most = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+}
+
 template <int Dim>
 double largest(const Field<Dim>& a) {
     double most = 0.0;
-    for (const Vec<Dim>& value : a) most = std::max(most, value.norm());
+    for (const Vec<Dim>& value : a) raise(most, value.norm());
     return most;
 }
 
 template <int Dim>
 double largest_difference(const Field<Dim>& a, const Field<Dim>& b) {
     double most = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+    for (std::size_t i = 0; i < a.size(); ++i) raise(most, (a[i] - b[i]).norm());
     return most;
 }
 

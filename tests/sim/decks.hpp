@@ -33,8 +33,8 @@ shapes:
 grid: {origin: [0, 0, 0], extent: [4, 4, 4], spacing: "${1/n}"}
 )yaml";
 
-/// Lattice grains of unlike size that fall on each other and break: ten that fit into unions, a bar that fits
-/// nowhere, and a group of four alike.
+/// Lattice grains of unlike size that fall on each other and break: sixteen that fit into unions, a bar
+/// that fits nowhere, and a group of four alike.
 inline const std::string unequal_deck = R"yaml(title: unequal
 materials:
   rubber: {density: 3000, bulk_modulus: 10 MPa, shear_modulus: 2.5 MPa, bond_damping: 0.1 ms, critical_stretch: 0.03}
@@ -44,6 +44,7 @@ shapes:
   c: {type: disk, radius: 0.42, spacing: 0.1}
   d: {type: disk, radius: 0.44, spacing: 0.1}
   e: {type: regular_polygon, sides: 6, radius: 0.5, spacing: 0.1}
+  f: {type: disk, radius: 0.48, spacing: 0.1}
   bar: {type: rectangle, size: [2, 0.3], spacing: 0.1}
   ring: {type: disk, filling: rings, radius: 0.4, spacing: 0.1}
 grid: {origin: [0, 0], extent: [6, 6], spacing: 0.2}
@@ -53,14 +54,15 @@ contact: {friction: 0.3}
 time: {end: 0.1}
 output: {interval: 0.05, history_interval: 0.01}
 grains:
-  - {shape: ring, material: rubber, array: {counts: [4, 1], origin: [0.6, 3.6], step: [1.1, 1]}, velocity: [0, -3]}
-  - {shape: a, material: rubber, array: {counts: [3, 1], origin: [0.6, 0.52], step: [2.2, 1]}, velocity: [0, -3]}
-  - {shape: b, material: rubber, array: {counts: [2, 1], origin: [1.7, 0.52], step: [2.2, 1]}, velocity: [0, -3]}
-  - {shape: c, material: rubber, array: {counts: [2, 1], origin: [0.6, 1.5], step: [2.2, 1]}, velocity: [0, -3]}
-  - {shape: d, material: rubber, array: {counts: [2, 1], origin: [1.7, 1.5], step: [2.2, 1]}, velocity: [0, -3],
+  - {shape: ring, material: rubber, array: {counts: [4, 1], origin: [0.6, 4.3], step: [1.1, 1]}, velocity: [0, -3]}
+  - {shape: a, material: rubber, array: {counts: [1, 3], origin: [0.6, 0.52], step: [1, 1.02]}, velocity: [0, -3]}
+  - {shape: b, material: rubber, array: {counts: [1, 3], origin: [1.7, 0.52], step: [1, 1.02]}, velocity: [0, -3]}
+  - {shape: c, material: rubber, array: {counts: [1, 3], origin: [2.8, 0.52], step: [1, 1.02]}, velocity: [0, -3]}
+  - {shape: d, material: rubber, array: {counts: [1, 3], origin: [3.9, 0.52], step: [1, 1.02]}, velocity: [0, -3],
      angle: 0.3}
-  - {shape: e, material: rubber, position: [5, 1.5], velocity: [0, -3]}
-  - {shape: bar, material: rubber, position: [2.5, 2.4], velocity: [0, -3]}
+  - {shape: e, material: rubber, position: [5, 3.6], velocity: [0, -3]}
+  - {shape: f, material: rubber, array: {counts: [1, 3], origin: [5, 0.52], step: [1, 1.02]}, velocity: [0, -3]}
+  - {shape: bar, material: rubber, position: [2.5, 3.4], velocity: [0, -3]}
 )yaml";
 
 /// Runs a deck in a folder that vanishes.

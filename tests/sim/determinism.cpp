@@ -57,7 +57,7 @@ TEST_CASE("Determinism: thirty grains in the plane, every method") {
 }
 
 TEST_CASE("Determinism: lattice grains of unlike size, which share unions and break") {
-    check_threads(unequal_deck, {}, 15);
+    check_threads(unequal_deck, {}, 21);
     CHECK(run_text(unequal_deck).summary.energy.fracture > 0.0);
 }
 
