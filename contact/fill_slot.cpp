@@ -84,7 +84,7 @@ struct Bunch {
 template <int Dim>
 struct SlotSums {
     Pack volume = Pack::Zero(), m = Pack::Zero();
-    std::array<Pack, Dim> slope, md;          ///< V times gradient, m w d
+    std::array<Pack, Dim> slope, md;             ///< V times gradient, m w d
     std::array<std::array<Pack, Dim>, Dim> mdd;  ///< m w d d^T, upper half
 
     SlotSums() {
@@ -141,7 +141,8 @@ void fill_slot(const ContactScene<Dim>& scene, const CartesianGrid<Dim>& grid, c
                                 candidates);
         for (int k = 0; k * lanes < bunch.count; ++k) sums.add(bunch, k, per_h, weights.nodal);
         for (int k = 0; k < bunch.count; ++k) {
-            Support<Dim>& e = support[n];  // written over by the next one, unless it has the node in its reach
+            Support<Dim>& e =
+                support[n];  // written over by the next one, unless it has the node in its reach
             e.particle = bunch.particle[k];
             e.surface = bunch.surface[k];
             e.N = bunch.at(bunch.N, k);

@@ -19,8 +19,8 @@ struct SlotWeights {
     bool rotation = true;          ///< slots turn
 };
 
-/// Fills a slot, whose grain and index are set, from those of the candidates that are near. `support`: room for
-/// all candidates; the first n_support stay.
+/// Fills a slot, whose grain and index are set, from those of the candidates that are near. `support`: room
+/// for all candidates; the first n_support stay.
 template <int Dim>
 void fill_slot(const ContactScene<Dim>& scene, const CartesianGrid<Dim>& grid, const SlotWeights& weights,
                std::span<const Candidate> candidates, Slot<Dim>& slot, Support<Dim>* support);

@@ -33,12 +33,13 @@ Outcome advance(Scene<2>& scene, int steps) {
         kick(scene, now);
         drift(scene, now);
     }
-    return {scene.n_bonds, now.newly_broken, now.ledger.past.fracture, scene.elastic_energy(),
-            make_frame(scene, now)};
+    Outcome outcome{scene.n_bonds, now.newly_broken, now.ledger.past.fracture, scene.elastic_energy(), {}};
+    make_frame(scene, now, outcome.frame);
+    return outcome;
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-    double most = 0.0;
+float largest_difference(const std::vector<float>& a, const std::vector<float>& b) {
+    float most = 0.0f;
     for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
     return most;
 }
@@ -76,9 +77,9 @@ TEST_CASE(
     CHECK(std::abs(a.elastic / b.elastic - 1.0) < 1e-9);    // measured 3.7e-13, bound 1e-9
     CHECK(a.frame.damage == b.frame.damage);
     CHECK(*std::max_element(b.frame.damage.begin(), b.frame.damage.end()) > 0.1);
-    const double largest = *std::max_element(b.frame.stress.begin(), b.frame.stress.end());
-    // measured 4.1e-13, bound 1e-9
-    CHECK(largest_difference(a.frame.stress, b.frame.stress) < 1e-9 * largest);
+    const float largest = *std::max_element(b.frame.stress.begin(), b.frame.stress.end());
+    // measured 0 to 6e-8, the rounding of 32 bits; bound 2e-7
+    CHECK(largest_difference(a.frame.stress, b.frame.stress) < 2e-7f * largest);
 }
 
 }  // namespace quern::test
