@@ -29,7 +29,7 @@ void ContactNodes<Dim>::find(const ContactScene<Dim>& scene, double ahead) {
     ahead *= faster_by_contact;
     travelled_ = scene.travelled + ahead;
     const double skin = options_.skin * grid_.h();
-    path_between_choices_ = std::clamp(steps_between_choices * ahead, 0.05 * skin, 0.5 * skin);
+    path_between_choices_ = std::clamp(steps_between_choices * ahead, 0.005 * skin, 0.5 * skin);
     searched_ = !(skin > 0.0) || windows_.size() != scene.grains.size() || scene.travelled >= search_at_;
     if (!searched_) return;
     search(scene);
@@ -301,39 +301,47 @@ void ContactNodes<Dim>::wake() {
     const std::size_t n_slots = static_cast<std::size_t>(page_slots_.back());
     node_slots_.resize(static_cast<std::size_t>(page_nodes_.back()) + 1);
     node_slots_.back() = page_slots_.back();
-    slot_site_.resize(n_slots);
+    n_near_.resize(n_slots);
     slot_order_.resize(n_slots);
     slots_.resize(n_slots);
-    if (support_.size() < pages_.size()) support_.resize(pages_.size());
+    if (support_.size() < pages_.size()) {
+        support_.resize(pages_.size());
+        near_.resize(pages_.size());
+    }
     parallel::for_each(pages_.size(), [&](std::size_t k) {
         int node = page_nodes_[k], slot = page_slots_[k];
-        std::size_t n_candidates = 0;
+        near_[k].clear();
         for (int i = page_found_[k]; i < page_found_[k + 1]; ++i) {
             if (!awake_[i]) continue;
             node_slots_[node++] = slot;
             for (int j = found_begin_[i]; j < found_begin_[i + 1]; ++j, ++slot) {
-                slot_site_[slot] = found_sites_[j];
+                const Site& site = sites_[found_sites_[j]];
+                const std::span<const Candidate> candidates = candidates_of(site);
+                slots_[slot].grain = site.grain;
+                slots_[slot].index = site.index;
                 slot_order_[slot] = slot;
-                n_candidates += static_cast<std::size_t>(sites_[found_sites_[j]].n_candidates);
+                n_near_[slot] = site.n_candidates;
+                near_[k].insert(near_[k].end(), candidates.begin(), candidates.end());
             }
         }
-        support_[k].resize(n_candidates);
+        support_[k].resize(near_[k].size());
     });
     grain_slots_.assign(windows_.size() + 1, 0);
-    for (const int s : slot_site_) ++grain_slots_[sites_[s].grain + 1];
+    for (const Slot<Dim>& slot : slots_) ++grain_slots_[slot.grain + 1];
     std::partial_sum(grain_slots_.begin(), grain_slots_.end(), grain_slots_.begin());
     slot_of_grain_.resize(n_slots);
     std::vector<int> next(grain_slots_.begin(), grain_slots_.end() - 1);
-    for (std::size_t s = 0; s < n_slots; ++s)
-        slot_of_grain_[next[sites_[slot_site_[s]].grain]++] = static_cast<int>(s);
+    for (std::size_t s = 0; s < n_slots; ++s) slot_of_grain_[next[slots_[s].grain]++] = static_cast<int>(s);
 }
 
 template <int Dim>
 void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene, int page) {
     Support<Dim>* support = support_[page].data();
+    const Candidate* near = near_[page].data();
     for (int s = page_slots_[page]; s < page_slots_[page + 1]; ++s) {
-        fill_slot(scene, sites_[slot_site_[s]], slots_[s], support);
+        fill_slot<Dim>(scene, grid_, options_.weights, {near, near + n_near_[s]}, slots_[s], support);
         support += slots_[s].n_support;
+        near += n_near_[s];
     }
     for (int a = page_nodes_[page]; a < page_nodes_[page + 1]; ++a)
         std::sort(slot_order_.begin() + node_slots_[a], slot_order_.begin() + node_slots_[a + 1],
@@ -359,14 +367,6 @@ double ContactNodes<Dim>::distance_to_surface(const ContactScene<Dim>& scene, co
         least = std::min(least, (scene.x[p] - x_node).cwiseAbs().maxCoeff());
     }
     return std::max(least / grid_.h() - 1.0, 0.0);
-}
-
-template <int Dim>
-void ContactNodes<Dim>::fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
-                                  Support<Dim>* support) const {
-    slot.grain = site.grain;
-    slot.index = site.index;
-    quern::fill_slot(scene, grid_, options_.weights, candidates_of(site), slot, support);
 }
 
 template class ContactNodes<2>;

@@ -132,8 +132,6 @@ class ContactNodes {
     std::span<const Candidate> candidates_of(const Site& site) const {
         return {candidates_[site.grain].data() + site.candidate, static_cast<std::size_t>(site.n_candidates)};
     }
-    void fill_slot(const ContactScene<Dim>& scene, const Site& site, Slot<Dim>& slot,
-                   Support<Dim>* support) const;
     IntVec<Dim> wrapped(const IntVec<Dim>& node) const {
         IntVec<Dim> w;
         for (int a = 0; a < Dim; ++a) w[a] = grid_.wrapped(a, node[a]);
@@ -161,12 +159,14 @@ class ContactNodes {
     double path_between_choices_ = 0.0;         ///< [m]
 
     // Of the last choice.
-    std::vector<double> wake_at_;                               ///< [n_found] of `travelled` [m]
-    std::vector<std::uint8_t> awake_;                           ///< [n_found]
-    std::vector<int> page_nodes_;                               ///< [n_pages + 1] into nodes that are awake
-    std::vector<int> page_slots_;                               ///< [n_pages + 1] into slots_
-    std::vector<int> node_slots_, slot_order_;                  ///< slots of each node that is awake
-    std::vector<int> slot_site_, grain_slots_, slot_of_grain_;  ///< site of a slot, slots of a grain
+    std::vector<double> wake_at_;                   ///< [n_found] of `travelled` [m]
+    std::vector<std::uint8_t> awake_;               ///< [n_found]
+    std::vector<int> page_nodes_;                   ///< [n_pages + 1] into nodes that are awake
+    std::vector<int> page_slots_;                   ///< [n_pages + 1] into slots_
+    std::vector<int> node_slots_, slot_order_;      ///< slots of each node that is awake
+    std::vector<int> grain_slots_, slot_of_grain_;  ///< slots of each grain
+    std::vector<std::vector<Candidate>> near_;      ///< [n_pages] slot after slot
+    std::vector<int> n_near_;                       ///< [n_slots]
 
     std::vector<Slot<Dim>> slots_;                    ///< node after node
     std::vector<std::vector<Support<Dim>>> support_;  ///< [n_pages] slot after slot
@@ -190,9 +190,13 @@ void ContactNodes<Dim>::choose(const ContactScene<Dim>& scene, FreePath&& free_p
             scratch.support.resize(std::max(scratch.support.size(), n));
             Support<Dim>* support = scratch.support.data();
             for (std::size_t k = 0; k < sites.size(); ++k) {
-                fill_slot(scene, sites_[sites[k]], scratch.slots[k], support);
-                scratch.slots[k].away = distance_to_surface(scene, sites_[sites[k]]);
-                support += scratch.slots[k].n_support;
+                const Site& site = sites_[sites[k]];
+                Slot<Dim>& slot = scratch.slots[k];
+                slot.grain = site.grain;
+                slot.index = site.index;
+                fill_slot<Dim>(scene, grid_, options_.weights, candidates_of(site), slot, support);
+                slot.away = distance_to_surface(scene, site);
+                support += slot.n_support;
             }
             wake_at_[i] = travelled_ + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
             awake_[i] = wake_at_[i] <= travelled_ + path;
