@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "grid/shape_functions.hpp"
+
 namespace quern {
 
 namespace {
@@ -15,8 +17,8 @@ constexpr double max_slope = 0.5;
 constexpr double max_interface_distance = 0.75;  ///< from the node [h]
 constexpr double anywhere = std::numeric_limits<double>::infinity();
 constexpr double least_filling = 0.1;  ///< volume [cells] that a slot needs to have a surface
-/// The fit of a grain with corners jumps when particles of another face join it: by this much [h], or by any
-/// amount where the slot is filled less than this.
+/// The fit of a grain with corners jumps when particles of another face join it: by this much [h], twice as
+/// much where the slot is filled less than this.
 constexpr double corner_jump = 0.25, trusted_filling = 0.35;
 /// Two bodies that move close a gap twice as fast as one; the rest is for what the fit does not know.
 constexpr double gap_of_path = 4.0;
@@ -191,23 +193,22 @@ std::optional<Tile<Dim>> wall_tile_within(double reach, const TileSide<Dim>& A, 
     return tile;
 }
 
-/// Whether a grain fills this part of a cell at the node, or of the smaller of both grains.
+/// What a grain fills of a cell at the node, or of the smaller of both grains.
 template <int Dim>
-bool fills(double part, const TileSide<Dim>& side, double h, double other_volume) {
-    const double full = std::min({std::pow(h, static_cast<double>(Dim)), side.grain->volume, other_volume});
-    return side.slot->volume >= part * full;
+double filling(const TileSide<Dim>& side, double h, double other_volume) {
+    return side.slot->volume / std::min({power(h, Dim), side.grain->volume, other_volume});
 }
 
+/// `least`: filling of the side that has less; `jumps`: fits may jump.
 template <int Dim>
-double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, bool jumps, bool thin, double h) {
-    double path = away;
-    if (tile) {
-        const double jump = jumps ? (thin ? 2.0 * corner_jump : corner_jump) : 0.0;
-        const double gap = tile->gap / h - jump;
-        const double beyond = std::abs(tile->point.dot(tile->normal)) / h - max_interface_distance - jump;
-        path = std::max({gap / gap_of_path, beyond / 2.0, 0.0});
-    }
-    return path;
+double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, double least, bool jumps, double h) {
+    // A surface that moves by s sweeps s h^(Dim-1) of the cell at most, sqrt(Dim) as much askew.
+    const double to_fill = (least_filling - least) / 2.0;
+    if (!tile) return std::max(away, to_fill);
+    const double jump = jumps ? (least < trusted_filling ? 2.0 * corner_jump : corner_jump) : 0.0;
+    const double gap = tile->gap / h - jump;
+    const double beyond = std::abs(tile->point.dot(tile->normal)) / h - max_interface_distance - jump;
+    return std::max({gap / gap_of_path, beyond / 2.0, to_fill, 0.0});
 }
 
 }  // namespace
@@ -215,7 +216,7 @@ double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, bool jump
 template <int Dim>
 std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
                                    const GridContactOptions& options) {
-    if (!fills(least_filling, A, h, B.grain->volume) || !fills(least_filling, B, h, A.grain->volume))
+    if (std::min(filling(A, h, B.grain->volume), filling(B, h, A.grain->volume)) < least_filling)
         return std::nullopt;
     return tile_within(max_interface_distance, A, B, h, options);
 }
@@ -223,26 +224,24 @@ std::optional<Tile<Dim>> make_tile(const TileSide<Dim>& A, const TileSide<Dim>& 
 template <int Dim>
 std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
                                         double h, const GridContactOptions& options) {
-    if (!fills(least_filling, A, h, A.grain->volume)) return std::nullopt;
+    if (filling(A, h, A.grain->volume) < least_filling) return std::nullopt;
     return wall_tile_within(max_interface_distance, A, wall, wall_offset, h, options);
 }
 
 template <int Dim>
 double free_path(const TileSide<Dim>& A, const TileSide<Dim>& B, double h,
                  const GridContactOptions& options) {
-    const bool thin =
-        !fills(trusted_filling, A, h, B.grain->volume) || !fills(trusted_filling, B, h, A.grain->volume);
+    const double least = std::min(filling(A, h, B.grain->volume), filling(B, h, A.grain->volume));
     const bool jumps = A.grain->shape->cornered || B.grain->shape->cornered;
-    return path_to_meet(tile_within(anywhere, A, B, h, options), std::max(A.slot->away, B.slot->away), jumps,
-                        thin, h);
+    return path_to_meet(tile_within(anywhere, A, B, h, options), std::max(A.slot->away, B.slot->away), least,
+                        jumps, h);
 }
 
 template <int Dim>
 double free_path(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset, double h,
                  const GridContactOptions& options) {
-    const bool thin = !fills(trusted_filling, A, h, A.grain->volume);
     return path_to_meet(wall_tile_within(anywhere, A, wall, wall_offset, h, options), A.slot->away,
-                        A.grain->shape->cornered, thin, h);
+                        filling(A, h, A.grain->volume), A.grain->shape->cornered, h);
 }
 
 template double free_path<2>(const TileSide<2>&, const TileSide<2>&, double, const GridContactOptions&);

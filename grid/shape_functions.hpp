@@ -12,8 +12,9 @@
 
 namespace quern {
 
-constexpr int power(int base, int exponent) {
-    return exponent == 0 ? 1 : base * power(base, exponent - 1);
+template <class T>
+constexpr T power(T base, int exponent) {
+    return exponent == 0 ? T{1} : base * power(base, exponent - 1);
 }
 
 /// The 2^Dim nodes whose linear functions a point sees. Node k = base + bits of k.
