@@ -198,7 +198,7 @@ void ContactNodes<Dim>::choose(const ContactScene<Dim>& scene, FreePath&& free_p
                 slot.away = distance_to_surface(scene, site);
                 support += slot.n_support;
             }
-            wake_at_[i] = travelled_ + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
+            wake_at_[i] = scene.travelled + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
             awake_[i] = wake_at_[i] <= travelled_ + path;
         }
     });

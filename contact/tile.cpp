@@ -20,6 +20,8 @@ constexpr double least_filling = 0.1;  ///< volume [cells] that a slot needs to 
 /// The fit of a grain with corners jumps when particles of another face join it: by this much [h], twice as
 /// much where the slot is filled less than this.
 constexpr double corner_jump = 0.25, trusted_filling = 0.35;
+/// Fits to a few particles at the rim of a slot may be far off: no node sleeps longer than this [h].
+constexpr double longest_path = 0.1, longest_path_with_corners = 0.03;
 /// Two bodies that move close a gap twice as fast as one; the rest is for what the fit does not know.
 constexpr double gap_of_path = 4.0;
 /// Least cosine between a particle's normal and that of the contact, for cornered grains: keeps the corners
@@ -208,7 +210,8 @@ double path_to_meet(const std::optional<Tile<Dim>>& tile, double away, double le
     const double jump = jumps ? (least < trusted_filling ? 2.0 * corner_jump : corner_jump) : 0.0;
     const double gap = tile->gap / h - jump;
     const double beyond = std::abs(tile->point.dot(tile->normal)) / h - max_interface_distance - jump;
-    return std::max({gap / gap_of_path, beyond / 2.0, to_fill, 0.0});
+    const double path = std::max({gap / gap_of_path, beyond / 2.0, to_fill, 0.0});
+    return std::min(path, jumps ? longest_path_with_corners : longest_path);
 }
 
 }  // namespace
