@@ -9,6 +9,7 @@
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
+#include "grid/z_order.hpp"
 #include "src/mesh/make_shape.hpp"
 #include "src/sim/force_plan.hpp"
 
@@ -72,20 +73,25 @@ int index_of(const std::vector<Named>& list, const std::string& name) {
     return static_cast<int>(it - list.begin());
 }
 
-/// Grains in the order of their groups: shape, material, then number in the deck.
+/// Grains in the order of their groups, shape and material; within a group along a curve through space, so
+/// that neighbours share caches.
 template <int Dim>
 void place_grains(const Deck& deck, Scene<Dim>& scene) {
     const int n_grains = static_cast<int>(deck.grains.size());
-    std::vector<std::tuple<int, int, int>> order;
-    for (int id = 0; id < n_grains; ++id)
+    std::vector<std::tuple<int, int, std::uint64_t, int>> order;
+    for (int id = 0; id < n_grains; ++id) {
+        const Vec<Dim> in_cells = scene.grid.in_cells(vec<Dim>(deck.grains[id].position));
         order.emplace_back(index_of(deck.shapes, deck.grains[id].shape),
-                           index_of(deck.materials, deck.grains[id].material), id);
+                           index_of(deck.materials, deck.grains[id].material),
+                           z_order<Dim>(CartesianGrid<Dim>::cell(in_cells)), id);
+    }
     std::sort(order.begin(), order.end());
     scene.grain_of_id.resize(static_cast<std::size_t>(n_grains));
     std::map<std::pair<int, int>, int> group_size;
-    for (const auto& [shape_index, material_index, id] : order) ++group_size[{shape_index, material_index}];
+    for (const auto& [shape_index, material_index, place, id] : order)
+        ++group_size[{shape_index, material_index}];
     std::pair<int, int> previous{-1, -1};
-    for (const auto& [shape_index, material_index, id] : order) {
+    for (const auto& [shape_index, material_index, place, id] : order) {
         const GrainDeck& from = deck.grains[id];
         const Material& material = deck.materials[material_index];
         const Shape<Dim>& shape = *scene.shapes[shape_index];
