@@ -5,8 +5,6 @@
 #include <climits>
 #include <numeric>
 
-#include "grid/shape_functions.hpp"
-
 namespace quern {
 
 namespace {

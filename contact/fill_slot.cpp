@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "grid/shape_functions.hpp"
+
 namespace quern {
 
 namespace {
@@ -27,30 +29,18 @@ bool invert_inertia(const Mat<3>& second, double m, double h, Mat<3>& Y) {
     return usable;
 }
 
-/// A value of each of four particles. Sums in lanes have the same order on every machine.
-using Pack = Eigen::Array<double, 4, 1>;
-constexpr int lanes = 4;
-
-double sum(const Pack& pack) {
-    return (pack[0] + pack[1]) + (pack[2] + pack[3]);
-}
-
-Pack hat(const Pack& t) {
-    return (1.0 - t.abs()).max(0.0);
-}
-
 /// Particles near a node, component by component: what is done with them needs no branch.
 template <int Dim>
 struct Bunch {
     static constexpr int size = 64;
-    using Packs = std::array<Pack, size / lanes>;
+    using Packs = std::array<Pack, size / pack_size>;
     std::array<Packs, Dim> d;  ///< x_p - x_a [m]
     Packs V, m, q;             ///< volume, mass, factor of the weight
     Packs N, w, mw;            ///< linear function, weight in the slot, m w
     std::array<int, size> particle, surface;
     int count = 0;
 
-    static double& at(Packs& packs, int k) { return packs[k / lanes][k % lanes]; }
+    static double& at(Packs& packs, int k) { return packs[k / pack_size][k % pack_size]; }
 
     /// Takes candidates that are in reach of the quadratic functions, until it is full; returns what is left.
     /// Others must not take a lane: lists differ with the time of the search, sums may not.
@@ -72,7 +62,7 @@ struct Bunch {
             at(q, count) = on_surface ? 1.0 : inside;
             count += r.cwiseAbs().maxCoeff() < reach ? 1 : 0;
         }
-        for (int k = count; k % lanes != 0; ++k) {  // nothing stands on the node
+        for (int k = count; k % pack_size != 0; ++k) {  // nothing stands on the node
             for (int a = 0; a < Dim; ++a) at(d[a], k) = 0.0;
             at(V, k) = at(m, k) = at(q, k) = 0.0;
         }
@@ -93,18 +83,15 @@ struct SlotSums {
         for (std::array<Pack, Dim>& row : mdd) row.fill(Pack::Zero());
     }
 
-    /// Weights of four particles. Linear: N; quadratic spline: B = (o^2 - 3 i^2)/2 with o = (3/2 - |t|)+ and
-    /// i = (1/2 - |t|)+, dB/dt = hat(t + 1/2) - hat(t - 1/2).
+    /// Weighs four particles and adds them.
     void add(Bunch<Dim>& bunch, int k, double per_h, bool nodal) {
         std::array<Pack, Dim> B, dB;
         Pack N = Pack::Ones();
         for (int a = 0; a < Dim; ++a) {
             const Pack t = bunch.d[a][k] * per_h;
-            const Pack r = t.abs();
-            const Pack outer = (1.5 - r).max(0.0), inner = (0.5 - r).max(0.0);
-            B[a] = 0.5 * (outer * outer - 3.0 * inner * inner);
-            dB[a] = hat(t + 0.5) - hat(t - 0.5);
-            N *= (1.0 - r).max(0.0);
+            B[a] = quadratic_shape(t);
+            dB[a] = quadratic_slope(t);
+            N *= linear_shape(t);
         }
         const Pack w = bunch.q[k] * (nodal ? N : Pack(N * N));
         const Pack mw = bunch.m[k] * w;
@@ -139,7 +126,7 @@ void fill_slot(const ContactScene<Dim>& scene, const CartesianGrid<Dim>& grid, c
     while (!candidates.empty()) {
         candidates = bunch.load(scene, grain, x_node, grid.h(), weights.nodal ? 1.0 : weights.interior_weight,
                                 candidates);
-        for (int k = 0; k * lanes < bunch.count; ++k) sums.add(bunch, k, per_h, weights.nodal);
+        for (int k = 0; k * pack_size < bunch.count; ++k) sums.add(bunch, k, per_h, weights.nodal);
         for (int k = 0; k < bunch.count; ++k) {
             Support<Dim>& e =
                 support[n];  // written over by the next one, unless it has the node in its reach

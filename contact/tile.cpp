@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "grid/shape_functions.hpp"
-
 namespace quern {
 
 namespace {

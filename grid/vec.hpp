@@ -60,4 +60,9 @@ inline Mat<3> rotation_matrix(const Spin<3>& rotation) {
     return Mat<3>::Identity() + std::sin(angle) * K + (1.0 - std::cos(angle)) * (K * K);
 }
 
+template <class T>
+constexpr T power(T base, int exponent) {
+    return exponent == 0 ? T{1} : base * power(base, exponent - 1);
+}
+
 }  // namespace quern

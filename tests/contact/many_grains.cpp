@@ -1,6 +1,5 @@
 // More than two grains at a node, periodic seams, tiny grains, threads.
 #include "grid/parallel.hpp"
-#include "grid/shape_functions.hpp"
 #include "tests/contact/scenes.hpp"
 
 namespace quern::test {

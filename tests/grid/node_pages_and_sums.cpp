@@ -6,7 +6,6 @@
 
 #include "grid/node_pages.hpp"
 #include "grid/parallel.hpp"
-#include "grid/shape_functions.hpp"
 
 namespace quern {
 

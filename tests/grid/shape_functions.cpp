@@ -1,95 +1,65 @@
-// Linear and quadratic shape functions: sums, moments, gradients.
+// Linear and quadratic shape functions: sums, moments, slopes.
 #include "grid/shape_functions.hpp"
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <random>
+#include <vector>
 
 namespace quern {
 
 namespace {
 
-template <int Dim>
-std::vector<Vec<Dim>> points() {
+/// Four points each, knots of both functions among them.
+std::vector<Pack> points() {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> any(-4.0, 4.0);
-    std::vector<Vec<Dim>> list = {Vec<Dim>::Zero(), Vec<Dim>::Constant(0.5), Vec<Dim>::Constant(-1.0)};
-    for (int i = 0; i < 200; ++i) {
-        Vec<Dim> x;
-        for (int a = 0; a < Dim; ++a) x[a] = any(random);
-        list.push_back(x);
-    }
+    std::vector<Pack> list = {Pack(0.0, 0.5, -0.5, 1.0), Pack(-1.0, 1.5, -1.5, 2.0)};
+    for (int i = 0; i < 100; ++i) list.emplace_back(any(random), any(random), any(random), any(random));
     return list;
 }
 
-template <int Dim>
-void check_linear() {
-    CAPTURE(Dim);
-    for (const Vec<Dim>& x : points<Dim>()) {
-        const LinearStencil<Dim> stencil(x);
-        double sum = 0.0;
-        Vec<Dim> mean = Vec<Dim>::Zero();
-        for (int k = 0; k < stencil.size; ++k) {
-            CHECK(stencil.N[k] >= 0.0);
-            sum += stencil.N[k];
-            mean += stencil.N[k] * stencil.node(k).template cast<double>();
-            double product = 1.0;
-            for (int a = 0; a < Dim; ++a) product *= 1.0 - std::abs(x[a] - stencil.node(k)[a]);
-            CHECK(std::abs(stencil.N[k] - product) < 1e-15);
-        }
-        CHECK(std::abs(sum - 1.0) < 1e-15);
-        CHECK((mean - x).norm() < 1e-14);
-    }
+double spline(double t) {
+    const double r = std::abs(t);
+    return r < 0.5 ? 0.75 - r * r : r < 1.5 ? 0.5 * (1.5 - r) * (1.5 - r) : 0.0;
 }
 
-double spline(double r) {
-    const double s = std::abs(r);
-    return s < 0.5 ? 0.75 - s * s : s < 1.5 ? 0.5 * (1.5 - s) * (1.5 - s) : 0.0;
-}
-
-template <int Dim>
-void check_quadratic() {
-    CAPTURE(Dim);
-    const auto value = [](const Vec<Dim>& r) {
-        double product = 1.0;
-        for (int a = 0; a < Dim; ++a) product *= spline(r[a]);
-        return product;
-    };
-    for (const Vec<Dim>& x : points<Dim>()) {
-        Vec<Dim> gradients = Vec<Dim>::Zero();
-        Mat<Dim> moments = Mat<Dim>::Zero();
-        int n_nodes = 0;
-        for (int k = 0; k < power(5, Dim); ++k) {
-            Vec<Dim> node = CartesianGrid<Dim>::cell(x).template cast<double>();
-            for (int a = 0, rest = k; a < Dim; ++a, rest /= 5) node[a] += rest % 5 - 2;
-            const Vec<Dim> t = x - node;
-            if (t.cwiseAbs().maxCoeff() > 1.5) continue;
-            ++n_nodes;
-            const Vec<Dim> gradient = quadratic_gradient<Dim>(t);
-            gradients += gradient;
-            moments += node * gradient.transpose();
-            for (int a = 0; a < Dim; ++a) {
-                const Vec<Dim> e = 1e-5 * Vec<Dim>::Unit(a);
-                const double slope = (value(t + e) - value(t - e)) / 2e-5;
-                CHECK(std::abs(gradient[a] - slope) < 1e-5);  // measured 5e-6 at knots, bound 1e-5
-            }
+/// Sums over the nodes of a function, and of the node times it.
+template <class Function>
+void check_sums(Function&& f, double zeroth, const std::vector<Pack>& list, bool slope) {
+    for (const Pack& x : list) {
+        Pack total = Pack::Zero(), first = Pack::Zero();
+        for (int node = -7; node <= 7; ++node) {
+            const Pack value = f(x - node);
+            total += value;
+            first += node * value;
         }
-        CHECK(n_nodes >= power(3, Dim));
-        CHECK(gradients.norm() < 1e-14);
-        CHECK((moments - Mat<Dim>::Identity()).norm() < 1e-14);
+        CHECK((total - zeroth).abs().maxCoeff() < 1e-14);                      // measured 1e-15
+        CHECK((first - (slope ? Pack::Ones() : x)).abs().maxCoeff() < 1e-14);  // measured 2e-15
     }
 }
 
 }  // namespace
 
-TEST_CASE("Shape functions: linear hats sum to one and reproduce linear fields") {
-    check_linear<2>();
-    check_linear<3>();
+TEST_CASE("Shape functions: values and slopes") {
+    for (const Pack& t : points())
+        for (int k = 0; k < pack_size; ++k) {
+            const double e = 1e-5, slope = (spline(t[k] + e) - spline(t[k] - e)) / (2.0 * e);
+            CHECK(std::abs(linear_shape(t)[k] - std::max(0.0, 1.0 - std::abs(t[k]))) < 1e-15);
+            CHECK(std::abs(quadratic_shape(t)[k] - spline(t[k])) < 1e-15);
+            CHECK(std::abs(quadratic_slope(t)[k] - slope) < 1e-5);  // measured 5e-6 at knots, bound 1e-5
+        }
 }
 
-TEST_CASE("Shape functions: gradients of quadratic splines and their sums") {
-    check_quadratic<2>();
-    check_quadratic<3>();
+TEST_CASE("Shape functions: they sum to one, reproduce linear fields, and so do their slopes") {
+    check_sums([](const Pack& t) { return linear_shape(t); }, 1.0, points(), false);
+    check_sums([](const Pack& t) { return quadratic_shape(t); }, 1.0, points(), false);
+    check_sums([](const Pack& t) { return quadratic_slope(t); }, 0.0, points(), true);
+}
+
+TEST_CASE("Shape functions: the sum of four") {
+    CHECK(sum(Pack(1.0, 2.0, 4.0, 8.0)) == 15.0);
 }
 
 }  // namespace quern
