@@ -194,10 +194,10 @@ void PairRule<Dim>::sweep(const ContactNodes<Dim>& nodes, Field& field, ContactR
         for (int k = 0; k < n_colours; ++k) {
             const int colour = forward ? k : n_colours - 1 - k;
             if (n_rows[colour] == 0) continue;
-            const auto [first, last] = nodes.pages_of_colour(colour);
-            const std::size_t n_pages = static_cast<std::size_t>(last - first);
+            const std::pair<int, int> pages = nodes.pages_of_colour(colour);
+            const std::size_t n_pages = static_cast<std::size_t>(pages.second - pages.first);
             parallel::for_each(
-                n_pages, [&](std::size_t i) { visit(static_cast<std::size_t>(first) + i, forward); },
+                n_pages, [&](std::size_t i) { visit(static_cast<std::size_t>(pages.first) + i, forward); },
                 n_rows[colour] < serial_below ? n_pages + 1 : 2);
         }
         double change = 0.0, total = 0.0;
