@@ -351,7 +351,8 @@ void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene, int page) {
 
 template <int Dim>
 void ContactNodes<Dim>::fill(const ContactScene<Dim>& scene) {
-    parallel::for_each(pages_.size(), [&](std::size_t page) { fill(scene, static_cast<int>(page)); });
+    parallel::for_each(
+        pages_.size(), [&](std::size_t page) { fill(scene, static_cast<int>(page)); }, serial_below());
 }
 
 template <int Dim>

@@ -75,8 +75,11 @@ class ContactNodes {
     }
     bool has_sites(int grain) const { return grain_sites_[grain] < grain_sites_[grain + 1]; }
 
+    static constexpr std::size_t few_slots = 128;
     static constexpr int n_colours = NodePages<Dim, std::int32_t>::n_colours;
     int n_pages() const { return static_cast<int>(pages_.size()); }
+    /// Loops over pages that are shorter than this stay on one thread: those of a few slots always.
+    std::size_t serial_below() const { return slots_.size() < few_slots ? pages_.size() + 1 : 2; }
     /// Pages of a colour are [first, last).
     std::pair<int, int> pages_of_colour(int colour) const {
         return {colour_pages_[colour], colour_pages_[colour + 1]};
@@ -177,31 +180,35 @@ template <int Dim>
 template <class FreePath>
 void ContactNodes<Dim>::choose(const ContactScene<Dim>& scene, FreePath&& free_path) {
     const double path = path_between_choices_;
-    parallel::for_each(pages_.size(), [&](std::size_t page) {
-        Scratch& scratch = scratch_[static_cast<std::size_t>(parallel::thread_id())];
-        for (int i = page_found_[page]; i < page_found_[page + 1]; ++i) {
-            awake_[i] = wake_at_[i] <= travelled_ + path;
-            if (!awake_[i]) continue;
-            const std::span sites(found_sites_.data() + found_begin_[i],
-                                  found_sites_.data() + found_begin_[i + 1]);
-            std::size_t n = 0;
-            for (const int s : sites) n += static_cast<std::size_t>(sites_[s].n_candidates);
-            scratch.slots.resize(sites.size());
-            scratch.support.resize(std::max(scratch.support.size(), n));
-            Support<Dim>* support = scratch.support.data();
-            for (std::size_t k = 0; k < sites.size(); ++k) {
-                const Site& site = sites_[sites[k]];
-                Slot<Dim>& slot = scratch.slots[k];
-                slot.grain = site.grain;
-                slot.index = site.index;
-                fill_slot<Dim>(scene, grid_, options_.weights, candidates_of(site), slot, support);
-                slot.away = distance_to_surface(scene, site);
-                support += slot.n_support;
+    parallel::for_each(
+        pages_.size(),
+        [&](std::size_t page) {
+            Scratch& scratch = scratch_[static_cast<std::size_t>(parallel::thread_id())];
+            for (int i = page_found_[page]; i < page_found_[page + 1]; ++i) {
+                awake_[i] = wake_at_[i] <= travelled_ + path;
+                if (!awake_[i]) continue;
+                const std::span sites(found_sites_.data() + found_begin_[i],
+                                      found_sites_.data() + found_begin_[i + 1]);
+                std::size_t n = 0;
+                for (const int s : sites) n += static_cast<std::size_t>(sites_[s].n_candidates);
+                scratch.slots.resize(sites.size());
+                scratch.support.resize(std::max(scratch.support.size(), n));
+                Support<Dim>* support = scratch.support.data();
+                for (std::size_t k = 0; k < sites.size(); ++k) {
+                    const Site& site = sites_[sites[k]];
+                    Slot<Dim>& slot = scratch.slots[k];
+                    slot.grain = site.grain;
+                    slot.index = site.index;
+                    fill_slot<Dim>(scene, grid_, options_.weights, candidates_of(site), slot, support);
+                    slot.away = distance_to_surface(scene, site);
+                    support += slot.n_support;
+                }
+                wake_at_[i] =
+                    scene.travelled + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
+                awake_[i] = wake_at_[i] <= travelled_ + path;
             }
-            wake_at_[i] = scene.travelled + free_path(std::span<const Slot<Dim>>(scratch.slots)) * grid_.h();
-            awake_[i] = wake_at_[i] <= travelled_ + path;
-        }
-    });
+        },
+        serial_below());
     choose_at_ = travelled_ + path;
     wake();
 }

@@ -143,10 +143,13 @@ void PairRule<Dim>::prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
     const std::size_t n_pages = static_cast<std::size_t>(nodes.n_pages());
     if (rows_.size() < n_pages) rows_.resize(n_pages);
     page_reports_.resize(n_pages);
-    parallel::for_each(n_pages, [&](std::size_t page) {
-        nodes.fill(scene, static_cast<int>(page));
-        make_rows(nodes, scene, trial.dt, static_cast<int>(page));
-    });
+    parallel::for_each(
+        n_pages,
+        [&](std::size_t page) {
+            nodes.fill(scene, static_cast<int>(page));
+            make_rows(nodes, scene, trial.dt, static_cast<int>(page));
+        },
+        nodes.serial_below());
 }
 
 template <int Dim>
@@ -215,34 +218,37 @@ template <class Before, class After>
 void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                              const Before& before, const After& after, ContactReport<Dim>& report) {
     slot_impulse_.resize(nodes.slots().size());
-    parallel::for_each(page_reports_.size(), [&](std::size_t page) {
-        const auto [first, last] = nodes.slots_of_page(static_cast<int>(page));
-        std::fill(slot_impulse_.begin() + first, slot_impulse_.begin() + last, Vec<Dim>::Zero());
-        PageReport& sum = page_reports_[page];
-        sum.normal_work = sum.friction_work = sum.wall_work = 0.0;
-        sum.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
-        sum.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
-        for (const PairRow<Dim>& row : rows_[page]) {
-            if (row.J_n == 0.0) continue;
-            const Slot<Dim>& A = nodes.slots()[row.a];
-            const Vec<Dim> J = row.J_n * row.n + row.J_t;
-            Vec<Dim> u = 0.5 * (before.velocity(A, row.r_a) + after.velocity(A, row.r_a));
-            slot_impulse_[row.a] -= J;
-            if (row.b >= 0) {
-                const Slot<Dim>& B = nodes.slots()[row.b];
-                u -= 0.5 * (before.velocity(B, row.r_b) + after.velocity(B, row.r_b));
-                slot_impulse_[row.b] += J;
-            } else {
-                u -= row.u_wall;
-                sum.wall_work -= J.dot(row.u_wall);
-                sum.wall_impulse[row.wall] += J;
-                sum.wall_moment[row.wall] +=
-                    moment(Vec<Dim>(nodes.grid().node_position(A.index) + row.point), J);
+    parallel::for_each(
+        page_reports_.size(),
+        [&](std::size_t page) {
+            const auto [first, last] = nodes.slots_of_page(static_cast<int>(page));
+            std::fill(slot_impulse_.begin() + first, slot_impulse_.begin() + last, Vec<Dim>::Zero());
+            PageReport& sum = page_reports_[page];
+            sum.normal_work = sum.friction_work = sum.wall_work = 0.0;
+            sum.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
+            sum.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
+            for (const PairRow<Dim>& row : rows_[page]) {
+                if (row.J_n == 0.0) continue;
+                const Slot<Dim>& A = nodes.slots()[row.a];
+                const Vec<Dim> J = row.J_n * row.n + row.J_t;
+                Vec<Dim> u = 0.5 * (before.velocity(A, row.r_a) + after.velocity(A, row.r_a));
+                slot_impulse_[row.a] -= J;
+                if (row.b >= 0) {
+                    const Slot<Dim>& B = nodes.slots()[row.b];
+                    u -= 0.5 * (before.velocity(B, row.r_b) + after.velocity(B, row.r_b));
+                    slot_impulse_[row.b] += J;
+                } else {
+                    u -= row.u_wall;
+                    sum.wall_work -= J.dot(row.u_wall);
+                    sum.wall_impulse[row.wall] += J;
+                    sum.wall_moment[row.wall] +=
+                        moment(Vec<Dim>(nodes.grid().node_position(A.index) + row.point), J);
+                }
+                sum.normal_work -= row.J_n * row.n.dot(u);
+                sum.friction_work -= row.J_t.dot(u);
             }
-            sum.normal_work -= row.J_n * row.n.dot(u);
-            sum.friction_work -= row.J_t.dot(u);
-        }
-    });
+        },
+        nodes.serial_below());
     for (std::size_t page = 0; page < page_reports_.size(); ++page) {
         const PageReport& sum = page_reports_[page];
         report.normal_work += sum.normal_work;
