@@ -62,9 +62,14 @@ template <int Dim>
 std::optional<Tile<Dim>> make_wall_tile(const TileSide<Dim>& A, const Wall<Dim>& wall, double wall_offset,
                                         double h, const GridContactOptions& options);
 
-/// How far each of two bodies may move before their surfaces can meet near a node [h]: a quarter of the gap,
-/// or half of what the interface lies beyond 0.75 h from the node. Both may move, so half of the gap would do
-/// if the fits were exact. A surface that is not there yet comes with its nearest particle.
+/// How far each of two bodies may move before their surfaces can meet near a node [h]:
+///
+///     max(g/(4 h), (|n.(x_c - x_a)|/h - 3/4)/2, (1/10 - filling)/2, 0), at most 1/10
+///
+/// 1/10: what a grain must fill of a cell to have a surface there. Both bodies may move, so g/(2 h) would do
+/// if fits were exact. Those of grains with corners jump when another face joins: both distances count a
+/// quarter of a cell less, half a cell where less than 0.35 is filled, and the path ends at 0.03. A surface
+/// that is not there yet comes with its nearest particle.
 template <int Dim>
 double free_path(const TileSide<Dim>& A, const TileSide<Dim>& B, double h, const GridContactOptions& options);
 template <int Dim>

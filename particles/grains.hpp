@@ -47,8 +47,10 @@ template <int Dim>
 Mat<Dim> best_fit_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x,
                            std::span<const double> mass);
 
-/// Best-fit rotation of the surface of a grain, all points alike: what turns the reference normals of its
-/// surface. A third of the particles of a grain of some hundred.
+/// Best-fit rotation of the surface of a grain, all n points alike: the R that maximises
+/// sum (x - x_m).(R (X - X_m)), x_m and X_m their means; found as above from
+/// A = sum x X^T - (sum x)(sum X)^T/n. It turns the reference normals of the surface; of a grain of a hundred
+/// particles it reads a third.
 template <int Dim>
 Mat<Dim> surface_rotation(const Grain<Dim>& grain, std::span<const Vec<Dim>> x);
 
