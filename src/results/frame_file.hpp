@@ -23,12 +23,16 @@ class FrameFileWriter {
     /// domain: lower then upper corner [m], 2 * dimension numbers, or empty where there is none.
     FrameFileWriter(const std::string& path, int dimension, const std::string& title,
                     const std::vector<double>& domain);
+    /// Goes on behind the first n_frames of a file; what follows them is cut off. Throws InputError if the
+    /// file cannot be read or has fewer.
+    FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames);
     ~FrameFileWriter();
 
     /// Appends and flushes. Frames must agree in dimension and number of particles; grain and volume are
     /// those of the first. Throws OutputError with the system's reason.
     void add(const Frame& frame);
     void close();
+    std::int64_t n_frames() const;
 
   private:
     struct Impl;

@@ -130,6 +130,32 @@ struct FrameFileWriter::Impl {
               "write");
     }
 
+    Hdf5Handle access() const {
+        Hdf5Handle properties = checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
+        // Without locks a picture can be drawn from a run that is still going on.
+        check(H5Pset_file_locking(properties, false, true), "set the file access");
+        check(H5Pset_alignment(properties, page / 2, page), "set the file access");
+        return properties;
+    }
+
+    /// /time first: a frame that it does not count is none.
+    void open_datasets() {
+        for (const auto& [dataset, name] : {std::pair{&time, "time"},
+                                            {&step, "step"},
+                                            {&position, "position"},
+                                            {&velocity, "velocity"},
+                                            {&damage, "damage"},
+                                            {&stress, "stress"}}) {
+            *dataset = checked(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, "open a dataset");
+            std::array<hsize_t, 3> shape{};
+            const Hdf5Handle space = checked(H5Dget_space(*dataset), H5Sclose, "read a space");
+            if (H5Sget_simple_extent_dims(space, shape.data(), nullptr) < 0) fail("read a shape");
+            shape[0] = n_frames;
+            check(H5Dset_extent(*dataset, shape.data()), "shorten a dataset");
+        }
+        check(H5Fflush(file, H5F_SCOPE_LOCAL), "write");
+    }
+
     void append(hid_t dataset, hid_t memory_type, const void* values) const {
         std::array<hsize_t, 3> shape{}, start{}, count{};
         const Hdf5Handle old = checked(H5Dget_space(dataset), H5Sclose, "read a space");
@@ -170,10 +196,7 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const s
                                  const std::vector<double>& domain)
     : impl_(new Impl(path, dimension)) {
     silence_hdf5();
-    const Hdf5Handle access = impl_->checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
-    // Without locks a picture can be drawn from a run that is still going on.
-    impl_->check(H5Pset_file_locking(access, false, true), "set the file access");
-    impl_->check(H5Pset_alignment(access, page / 2, page), "set the file access");
+    const Hdf5Handle access = impl_->access();
     const Hdf5Handle creation = impl_->checked(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
     impl_->check(H5Pset_istore_k(creation, half_of_index_node), "set the size of the index");
     impl_->file =
@@ -185,7 +208,34 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const s
     impl_->check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), "write");
 }
 
+FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames)
+    : impl_(new Impl(path, dimension)) {
+    if (n_frames > 0) {
+        const FrameFileReader reader(path);
+        if (reader.dimension() != dimension || static_cast<std::int64_t>(reader.n_frames()) < n_frames)
+            throw InputError(path, fmt::format("{} frames in {}D", reader.n_frames(), reader.dimension()),
+                             fmt::format("the {} frames in {}D of the checkpoint", n_frames, dimension),
+                             "was it replaced?");
+        impl_->n_particles = reader.n_particles();
+    }
+    silence_hdf5();
+    impl_->n_frames = static_cast<hsize_t>(n_frames);
+    const Hdf5Handle access = impl_->access();
+    impl_->file = impl_->checked(H5Fopen(path.c_str(), H5F_ACC_RDWR, access), H5Fclose, "open the file");
+    if (n_frames > 0) {
+        impl_->open_datasets();
+        return;
+    }
+    for (const char* name : {"time", "step", "position", "velocity", "damage", "stress", "grain", "volume"})
+        if (H5Lexists(impl_->file, name, H5P_DEFAULT) > 0)
+            impl_->check(H5Ldelete(impl_->file, name, H5P_DEFAULT), "remove an old dataset");
+}
+
 FrameFileWriter::~FrameFileWriter() = default;
+
+std::int64_t FrameFileWriter::n_frames() const {
+    return static_cast<std::int64_t>(impl_->n_frames);
+}
 
 void FrameFileWriter::add(const Frame& frame) {
     impl_->require_consistent(frame);

@@ -35,6 +35,24 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
     buffer_.reserve(buffer_size);
 }
 
+OutputFile::OutputFile(std::string path, std::int64_t kept) : path_(std::move(path)) {
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw_output_error(path_, "open for writing", errno);
+    const std::int64_t present = size();
+    if (present < kept) {
+        close(descriptor_);
+        throw InputError(path_, fmt::format("{} bytes", present),
+                         fmt::format("at least the {} bytes that it had at the checkpoint", kept),
+                         "was it replaced?");
+    }
+    if (ftruncate(descriptor_, kept) != 0 || lseek(descriptor_, 0, SEEK_END) < 0) {
+        const int error = errno;
+        close(descriptor_);
+        throw_output_error(path_, "shorten the file", error);
+    }
+    buffer_.reserve(buffer_size);
+}
+
 OutputFile::~OutputFile() {
     try {
         flush();
@@ -61,6 +79,12 @@ void OutputFile::overwrite(std::uint64_t offset, std::string_view text) {
     write_fully(text, static_cast<std::int64_t>(offset));
 }
 
+std::int64_t OutputFile::size() const {
+    struct stat status {};
+    if (fstat(descriptor_, &status) != 0) throw_output_error(path_, "inspect the file", errno);
+    return status.st_size;
+}
+
 void OutputFile::write_fully(std::string_view text, std::int64_t offset) {
     while (!text.empty()) {
         const ssize_t n = offset < 0 ? ::write(descriptor_, text.data(), text.size())
@@ -75,6 +99,11 @@ void OutputFile::write_fully(std::string_view text, std::int64_t offset) {
 GrowingXmlFile::GrowingXmlFile(std::string path, std::string_view head, std::string tail)
     : file_(std::move(path)), tail_(std::move(tail)), end_(head.size()) {
     file_.overwrite(0, std::string(head) + tail_);
+}
+
+GrowingXmlFile::GrowingXmlFile(std::string path, std::int64_t kept, std::string tail)
+    : file_(std::move(path), kept), tail_(std::move(tail)), end_(static_cast<std::uint64_t>(kept)) {
+    file_.overwrite(end_, tail_);
 }
 
 void GrowingXmlFile::add(std::string_view entry) {

@@ -12,13 +12,17 @@ namespace quern {
 class OutputFile {
   public:
     explicit OutputFile(std::string path);  ///< creates or truncates
-    ~OutputFile();                          ///< writes what is buffered; errors are lost, so flush() first
+    /// Goes on behind the first `kept` bytes of a file; what follows them is cut off. Throws InputError if
+    /// the file is shorter.
+    OutputFile(std::string path, std::int64_t kept);
+    ~OutputFile();  ///< writes what is buffered; errors are lost, so flush() first
     OutputFile(const OutputFile&) = delete;
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(std::string_view text);  ///< appends; buffered
     void flush();
     void overwrite(std::uint64_t offset, std::string_view text);  ///< at once, at a byte offset; unbuffered
+    std::int64_t size() const;                                    ///< without what is buffered [bytes]
 
   private:
     void write_fully(std::string_view text, std::int64_t offset);
@@ -31,6 +35,9 @@ class OutputFile {
 class GrowingXmlFile {
   public:
     GrowingXmlFile(std::string path, std::string_view head, std::string tail);
+    /// Goes on behind the first `kept` bytes of a file.
+    GrowingXmlFile(std::string path, std::int64_t kept, std::string tail);
+    std::int64_t bytes() const { return static_cast<std::int64_t>(end_); }  ///< without the closing tags
     void add(std::string_view entry);
 
   private:

@@ -70,4 +70,11 @@ struct Summary {
     std::vector<std::pair<std::string, std::int64_t>> warnings;  ///< text (with the first step), count
 };
 
+/// How far the files of a run have come: what lies behind is not of a run that goes on from here.
+struct ResultPosition {
+    std::int64_t n_frames = 0;
+    std::int64_t history_bytes = 0, grains_bytes = 0;
+    std::int64_t xdmf_bytes = 0, pvd_bytes = 0;  ///< without the closing tags
+};
+
 }  // namespace quern

@@ -45,11 +45,22 @@ std::vector<float> make_vtk_stress(const Frame& frame) {
     return stress;
 }
 
-void remove_frames_of_an_earlier_run(const std::string& directory) {
+constexpr const char* head =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n <Collection>\n";
+constexpr const char* tail = " </Collection>\n</VTKFile>\n";
+
+std::string frame_name(std::size_t number) {
+    return fmt::format("frame_{:05}.vtp", number);
+}
+
+/// Those of an earlier run, or of what a run did behind its checkpoint.
+void remove_frames_from(const std::string& directory, std::size_t first) {
     std::error_code error;
     for (const auto& entry : std::filesystem::directory_iterator(directory, error)) {
         const std::string name = entry.path().filename().string();
-        if (name.starts_with("frame_") && name.ends_with(".vtp"))
+        const std::string from = frame_name(first);
+        const bool behind = name.size() > from.size() || (name.size() == from.size() && name >= from);
+        if (name.starts_with("frame_") && name.ends_with(".vtp") && behind)
             std::filesystem::remove(entry.path(), error);
     }
 }
@@ -57,12 +68,16 @@ void remove_frames_of_an_earlier_run(const std::string& directory) {
 }  // namespace
 
 VtpSeries::VtpSeries(std::string directory)
-    : directory_(std::move(directory)),
-      collection_(directory_ + "/results.pvd",
-                  "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n <Collection>\n",
-                  " </Collection>\n</VTKFile>\n") {
+    : directory_(std::move(directory)), collection_(directory_ + "/results.pvd", head, tail) {
     create_directory(directory_ + "/frames");
-    remove_frames_of_an_earlier_run(directory_ + "/frames");
+    remove_frames_from(directory_ + "/frames", 0);
+}
+
+VtpSeries::VtpSeries(std::string directory, const ResultPosition& position)
+    : directory_(std::move(directory)),
+      collection_(directory_ + "/results.pvd", position.pvd_bytes, tail),
+      n_frames_(static_cast<std::size_t>(position.n_frames)) {
+    remove_frames_from(directory_ + "/frames", n_frames_);
 }
 
 void VtpSeries::add(const Frame& frame) {
@@ -94,7 +109,7 @@ void VtpSeries::add(const Frame& frame) {
     writer->SetInputData(cloud);
     writer->SetCompressorTypeToZLib();
     writer->WriteToOutputStringOn();
-    const std::string name = fmt::format("frames/frame_{:05}.vtp", n_frames_++);
+    const std::string name = "frames/" + frame_name(n_frames_++);
     if (writer->Write() == 0)
         throw OutputError(fmt::format("{}/{}: VTK cannot make the file", directory_, name));
     write_whole_file(fmt::format("{}/{}", directory_, name), writer->GetOutputString());

@@ -11,7 +11,10 @@ namespace quern {
 class VtpSeries {
   public:
     explicit VtpSeries(std::string directory);  ///< of the run; makes frames/ inside
+    /// Goes on behind the frames at `position`.
+    VtpSeries(std::string directory, const ResultPosition& position);
     void add(const Frame& frame);
+    std::int64_t bytes() const { return collection_.bytes(); }  ///< of results.pvd
 
   private:
     std::string directory_;

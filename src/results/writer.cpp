@@ -43,12 +43,20 @@ constexpr std::size_t long_packet = 4096;
 /// A directory that can be written to, without what would tell of another run.
 const std::string& make_run_directory(const WriterOptions& options) {
     create_directory(options.directory);
-    for (const char* name : {"summary.json", "results.pvd"}) {
+    for (const char* name : {"summary.json", "results.pvd", "checkpoint.h5", "checkpoint.previous.h5"}) {
         std::error_code error;
+        if (options.resumed && name != std::string_view("summary.json")) continue;
         std::filesystem::remove(options.directory + "/" + name, error);
         if (error) throw_output_error(options.directory + "/" + name, "remove the old file", error.value());
     }
     return options.directory;
+}
+
+/// 0 if there is none.
+std::int64_t file_size(const std::string& path) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    return error ? 0 : static_cast<std::int64_t>(size);
 }
 
 }  // namespace
@@ -68,6 +76,16 @@ struct ResultWriter::Files {
         grains.flush();
         if (options.vtp) vtp.emplace(directory);
     }
+    Files(const WriterOptions& options, const ResultPosition& position)
+        : directory(make_run_directory(options)),
+          dimension(options.dimension),
+          log(directory + "/run.log", file_size(directory + "/run.log")),
+          history(directory + "/history.csv", position.history_bytes),
+          grains(directory + "/grains.csv", position.grains_bytes),
+          frames(directory + "/results.h5", dimension, position.n_frames),
+          xdmf(directory + "/results.xdmf", dimension, position) {
+        if (options.vtp) vtp.emplace(directory, position);
+    }
 
     void write(const Packet& packet);
     void write(const HistoryRow& row);
@@ -86,7 +104,8 @@ ResultWriter::ResultWriter(const WriterOptions& options) {
         throw std::invalid_argument("ResultWriter: dimension is neither 2 nor 3");
     if (!options.domain.empty() && options.domain.size() != 2 * static_cast<std::size_t>(options.dimension))
         throw std::invalid_argument("ResultWriter: domain has not 2 * dimension numbers");
-    files_ = std::make_unique<Files>(options);
+    files_ = options.resumed ? std::make_unique<Files>(options, *options.resumed)
+                             : std::make_unique<Files>(options);
     background_ = std::make_unique<BackgroundWriter>(
         [files = files_.get()](const Packet& packet) { files->write(packet); });
 }
@@ -141,6 +160,12 @@ void ResultWriter::flush() {
     background_->wait();
     files_->history.flush();
     files_->grains.flush();
+}
+
+ResultPosition ResultWriter::position() {
+    flush();
+    return {files_->frames.n_frames(), files_->history.size(), files_->grains.size(), files_->xdmf.bytes(),
+            files_->vtp ? files_->vtp->bytes() : 0};
 }
 
 double ResultWriter::busy_seconds() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,9 @@ struct WriterOptions {
     std::string directory;  ///< created, with its parents
     int dimension = 2;
     bool vtp = false;
-    std::string title = {};           ///< of the pictures
-    std::vector<double> domain = {};  ///< lower, then upper corner [m], 2 * dimension; empty: none
+    std::string title = {};                      ///< of the pictures
+    std::vector<double> domain = {};             ///< lower, then upper corner [m], 2 * dimension; empty: none
+    std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
 };
 
 /// Files of one run. Rows and frames are written on a thread of their own, in the order in which they were
@@ -37,6 +39,7 @@ class ResultWriter {
     void add_history(const HistoryRow& row);  ///< history.csv
     void add_grain(const GrainRow& row);      ///< grains.csv
     void flush();                             ///< until all that was added is on disk
+    ResultPosition position();                ///< flushes
     void finish(const Summary& summary);      ///< summary.json; flushes and closes all, ends the thread
 
     double busy_seconds() const;  ///< what the thread has spent writing; finish() not yet called [s]

@@ -36,6 +36,11 @@ std::string attribute(const std::string& name, const char* type, const std::stri
 XdmfFile::XdmfFile(std::string path, int dimension)
     : file_(std::move(path), head, tail), dimension_(dimension) {}
 
+XdmfFile::XdmfFile(std::string path, int dimension, const ResultPosition& position)
+    : file_(std::move(path), position.xdmf_bytes, tail),
+      dimension_(dimension),
+      n_frames_(static_cast<std::size_t>(position.n_frames)) {}
+
 void XdmfFile::add(double time, std::size_t n) {
     const std::size_t f = n_frames_++;
     const int d = dimension_;

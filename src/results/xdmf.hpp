@@ -5,6 +5,7 @@
 #include <string>
 
 #include "src/results/output_file.hpp"
+#include "src/results/records.hpp"
 
 namespace quern {
 
@@ -12,6 +13,9 @@ namespace quern {
 class XdmfFile {
   public:
     XdmfFile(std::string path, int dimension);
+    /// Goes on behind the frames at `position`.
+    XdmfFile(std::string path, int dimension, const ResultPosition& position);
+    std::int64_t bytes() const { return file_.bytes(); }
     void add(double time, std::size_t n_particles);
 
   private:
