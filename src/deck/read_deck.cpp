@@ -1,5 +1,9 @@
 #include "src/deck/read_deck.hpp"
 
+#include <fmt/format.h>
+
+#include <cstdint>
+
 #include "src/deck/deck_input.hpp"
 
 namespace quern {
@@ -48,6 +52,7 @@ DeckInput make_input(const Deck& deck) {
     input.constraints = deck.constraints;
     static_cast<PrepareDeck&>(input.prepare) = deck.prepare;
     for (const LoadDeck& load : deck.prepare.loads) input.prepare.load_entries.push_back(load_input(load));
+    input.compute = deck.compute;
     input.output = deck.output;
     return input;
 }
@@ -69,6 +74,12 @@ Deck read_deck(const std::string& path, const std::vector<std::string>& override
 
 std::string resolved_yaml(const Deck& deck) {
     return write_section(make_input(deck), deck_table(), deck.dimension, Layout::block);
+}
+
+std::string deck_hash(const Deck& deck) {
+    std::uint64_t hash = 14695981039346656037ull;
+    for (const char c : resolved_yaml(deck)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    return fmt::format("{:016x}", hash);
 }
 
 }  // namespace quern

@@ -15,6 +15,9 @@ Deck read_deck(const std::string& path, const std::vector<std::string>& override
 /// The deck with every default and parameter resolved, SI numbers, as YAML that read_deck accepts again.
 std::string resolved_yaml(const Deck& deck);
 
+/// FNV-1a of the resolved deck, 16 hexadecimal digits: `deck_hash` in summary.json.
+std::string deck_hash(const Deck& deck);
+
 /// JSON Schema (draft 2020-12) of the deck, made from the same table of keys as the reader.
 std::string deck_schema();
 

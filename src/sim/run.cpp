@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
 #include <map>
 
 #include "grid/error.hpp"
@@ -14,6 +13,7 @@
 #include "quern_version.hpp"
 #include "src/deck/read_deck.hpp"
 #include "src/results/progress.hpp"
+#include "src/results/stop_signals.hpp"
 #include "src/results/writer.hpp"
 #include "src/sim/observe.hpp"
 #include "src/sim/step.hpp"
@@ -21,31 +21,6 @@
 namespace quern {
 
 namespace {
-
-volatile std::sig_atomic_t stop_requested = 0;
-void request_stop(int) {
-    stop_requested = 1;
-}
-
-/// SIGINT and SIGTERM ask the run to end after the step at hand.
-class StopSignals {
-  public:
-    StopSignals() {
-        stop_requested = 0;
-        previous_int_ = std::signal(SIGINT, request_stop);
-        previous_term_ = std::signal(SIGTERM, request_stop);
-    }
-    ~StopSignals() {
-        std::signal(SIGINT, previous_int_);
-        std::signal(SIGTERM, previous_term_);
-    }
-    StopSignals(const StopSignals&) = delete;
-    StopSignals& operator=(const StopSignals&) = delete;
-
-  private:
-    void (*previous_int_)(int);
-    void (*previous_term_)(int);
-};
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -56,12 +31,6 @@ double peak_memory_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return 1024.0 * static_cast<double>(usage.ru_maxrss);
-}
-
-std::string text_hash(const std::string& text) {
-    std::uint64_t hash = 14695981039346656037ull;
-    for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-    return fmt::format("{:016x}", hash);
 }
 
 /// Rows or frames that fall due every `interval` seconds, and at the start.
@@ -91,9 +60,8 @@ class Run {
         summary_.dimension = Dim;
         summary_.threads = parallel::n_threads();
         summary_.instructions = batch_loops(deck.compute.instructions).name;
-        const std::string resolved = resolved_yaml(deck);
-        summary_.deck_hash = text_hash(resolved);
-        writer_.write_text("deck.resolved.yaml", resolved);
+        summary_.deck_hash = deck_hash(deck);
+        writer_.write_text("deck.resolved.yaml", resolved_yaml(deck));
         summary_.n_particles = scene_->particles.size();
         summary_.n_bonds = scene_->n_bonds;
         summary_.n_grains = static_cast<std::int64_t>(scene_->grains.size());
@@ -188,7 +156,7 @@ class Run {
             const auto steps = static_cast<std::int64_t>(std::ceil(deck_.prepare.duration / now_.dt));
             Progress progress(options_.progress_terminal, deck_.prepare.duration,
                               [&](const std::string& line) { writer_.log("prepare: " + line); });
-            for (std::int64_t i = 0; i < steps && !stop_requested; ++i) {
+            for (std::int64_t i = 0; i < steps && !stop_requested(); ++i) {
                 kick(*scene_, now_);
                 drift(*scene_, now_);
                 now_.time = 0.0;
@@ -229,7 +197,7 @@ class Run {
             kick(*scene_, now_);
             const auto output_start = Clock::now();
             if (now_.first) observer.start(*scene_, now_);
-            const bool last = now_.step >= n_steps_ || stop_requested;
+            const bool last = now_.step >= n_steps_ || stop_requested();
             if (rows.due(now_.time, now_.dt) || last) {
                 write_rows(observer, tracker, now_.time - last_row);
                 last_row = now_.time;

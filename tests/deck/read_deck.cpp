@@ -269,3 +269,12 @@ TEST_CASE("resolved_yaml: reads back to the same deck") {
             CHECK(again.walls[i].normal == deck.walls[i].normal);
     }
 }
+
+TEST_CASE("deck_hash: tells resolved decks apart, by every section") {
+    const std::string plain = deck_hash(read_text(plain_deck));
+    CHECK(plain.size() == 16);
+    CHECK(deck_hash(read_text(plain_deck, {"params.unused=2"})) == plain);
+    for (const char* change :
+         {"time.end=2 ms", "contact.friction=0.2", "compute.kernel=single", "output.vtp=true"})
+        CHECK_MESSAGE(deck_hash(read_text(plain_deck, {change})) != plain, change);
+}
