@@ -27,6 +27,7 @@ struct Arguments {
     RunOptions run;
     RenderOptions render;
     bool markdown = false, profile = false;
+    std::string resumed;  ///< folder of a run
 };
 
 int report(std::string message, int code) {
@@ -54,16 +55,26 @@ void print_profile(const Summary& summary) {
                summary.instructions);
 }
 
-int run(const Arguments& arguments) {
+RunOutcome resume(const Arguments& arguments, RunOptions& options, RunRecord& record) {
+    options.directory = arguments.resumed;
+    return resume_run(options, &record);
+}
+
+RunOutcome start(const Arguments& arguments, RunOptions& options, RunRecord& record) {
     const Deck deck = read_deck(arguments.deck, arguments.overrides);
-    RunOptions options = arguments.run;
     if (options.directory.empty()) {
         options.directory =
             (std::filesystem::path("out") / std::filesystem::path(arguments.deck).stem()).string();
     }
+    return run_deck(deck, options, &record);
+}
+
+int run(const Arguments& arguments) {
+    RunOptions options = arguments.run;
     options.progress_terminal = isatty(STDERR_FILENO) != 0;
     RunRecord record;
-    const RunOutcome outcome = run_deck(deck, options, &record);
+    const RunOutcome outcome =
+        arguments.resumed.empty() ? start(arguments, options, record) : resume(arguments, options, record);
     const Summary& summary = record.summary;
     fmt::print("{}: {} grains, {} particles, {} bonds\n",
                outcome == RunOutcome::done ? "done" : "interrupted", summary.n_grains, summary.n_particles,
@@ -106,10 +117,17 @@ int parse_and_run(int argc, char** argv) {
     app.footer("Exit codes: 0 done, 2 bad input, 3 simulation failed, 4 output failed, 130 interrupted.");
 
     CLI::App& run_command = *app.add_subcommand("run", "Run a deck");
-    run_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
+    CLI::Option* const deck_option =
+        run_command.add_option("deck", arguments.deck, "Deck (YAML)")->type_name("DECK");
+    CLI::Option* const output_option =
+        run_command
+            .add_option("-o,--output", arguments.run.directory, "Folder of the results; default: out/<deck>")
+            ->type_name("DIR");
     run_command
-        .add_option("-o,--output", arguments.run.directory, "Folder of the results; default: out/<deck>")
-        ->type_name("DIR");
+        .add_option("--resume", arguments.resumed,
+                    "Go on with the run in this folder from its last checkpoint, instead of a deck")
+        ->type_name("DIR")
+        ->excludes(deck_option, output_option);
     run_command.add_option("--threads", arguments.run.threads, "Number of threads; default: all cores")
         ->type_name("N")
         ->check(CLI::Range(1, 4096));
@@ -154,6 +172,12 @@ int parse_and_run(int argc, char** argv) {
         return report("a command is required: run, check, schema or render (quern --help)",
                       InputError::exit_code);
     }
+    if (run_command.parsed() && arguments.deck.empty() && arguments.resumed.empty())
+        return report("run: a deck, or --resume and a folder, is required (quern run --help)",
+                      InputError::exit_code);
+    if (!arguments.resumed.empty() && !arguments.overrides.empty())
+        return report("run: --set does not go with --resume: the run goes on with its own deck",
+                      InputError::exit_code);
     if (run_command.parsed()) return run(arguments);
     if (render_command.parsed()) return draw(arguments);
     std::string text;

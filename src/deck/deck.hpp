@@ -143,12 +143,18 @@ struct ComputeDeck {
     Place place;
 };
 
+/// States from which a run can go on.
+struct CheckpointDeck {
+    int every = 0;  ///< steps; 0: only when the run is stopped
+};
+
 struct OutputDeck {
     double interval = 0.0;          ///< frames of results.h5 [s]; 0: 100 frames in the run
     double history_interval = 0.0;  ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
     std::vector<int> track;         ///< grains in grains.csv
     bool track_all = false;
     bool vtp = false;  ///< also a .vtp series
+    CheckpointDeck checkpoint;
     Place place;
 };
 

@@ -269,6 +269,14 @@ Table<PrepareInput> prepare_table() {
     return t;
 }
 
+Table<CheckpointDeck> checkpoint_table() {
+    using T = CheckpointDeck;
+    Table<T> t;
+    t.integer("every", &T::every, {0, 2e9, false, false, false},
+              "Steps between checkpoints; 0: only when the run is stopped");
+    return t;
+}
+
 Table<OutputDeck> output_table() {
     using T = OutputDeck;
     Table<T> t;
@@ -286,6 +294,8 @@ Table<OutputDeck> output_table() {
     };
     track.write = [](const T& output, int) { return output.track_all ? "all" : ids_text(output.track); };
     t.flag("vtp", &T::vtp, "Also a series of .vtp files");
+    t.section("checkpoint", &T::checkpoint, checkpoint_table(),
+              "States from which `quern run --resume` goes on");
     t.finish = [](T& output, const Cursor& at, const Context&) { output.place = at.place(); };
     return t;
 }

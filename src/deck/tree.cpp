@@ -250,10 +250,12 @@ void apply_override(Node& root, const std::string& override_text) {
                                              node->names.begin());
         }
         if (index >= node->items.size()) {
-            // New keys may be set; that they are known is checked with all others. New parameters would do
-            // nothing.
+            // New keys and sections may be set; that they are known is checked with all others. New
+            // parameters would do nothing, and a part of a new material or shape is a name misspelt.
+            const bool named_by_user =
+                node != &root && (node == root.find("materials") || node == root.find("shapes"));
             const bool may_be_new = node->kind != Node::Kind::list && node->kind != Node::Kind::scalar &&
-                                    (last || node == &root) && !in_params;
+                                    (last || !named_by_user) && !in_params;
             if (!may_be_new) lead_nowhere(where, name, *node);
             node->kind = Node::Kind::map;
             node->names.push_back(name);

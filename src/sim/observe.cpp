@@ -116,6 +116,17 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
 }
 
 template <int Dim>
+void Observer<Dim>::pass(Checkpoint& checkpoint) {
+    checkpoint.value("start energy", start_energy_);
+    checkpoint.value("start momentum", start_linear_);
+    checkpoint.value("start angular momentum", start_angular_);
+    for (double* value : {&largest_residual_, &throughput_, &momentum_error_, &momentum_scale_,
+                          &angular_error_, &angular_scale_})
+        checkpoint.value("largest", *value);
+    started_ = true;
+}
+
+template <int Dim>
 GrainTracker<Dim>::GrainTracker(const Scene<Dim>& scene, const Deck& deck) {
     if (deck.output.track_all)
         grains_ = scene.grain_of_id;
@@ -161,6 +172,13 @@ std::vector<GrainRow> GrainTracker<Dim>::rows(const Scene<Dim>& scene, StepConte
     }
     for (Vec<Dim>& impulse : now.grain_impulse) impulse.setZero();
     return rows;
+}
+
+template <int Dim>
+void GrainTracker<Dim>::pass(Checkpoint& checkpoint) {
+    checkpoint.array("tracked angle", std::span(angle_));
+    checkpoint.array("tracked spin", std::span(omega_));
+    checkpoint.array("tracked rotation", std::span(rotation_));
 }
 
 template <int Dim>

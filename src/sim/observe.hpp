@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 
+#include "src/results/checkpoint_file.hpp"
 #include "src/results/records.hpp"
 #include "src/sim/step.hpp"
 
@@ -22,6 +23,8 @@ class Observer {
     void start(const Scene<Dim>& scene, const StepContext<Dim>& now);
 
     HistoryRow history(const Scene<Dim>& scene, const StepContext<Dim>& now);
+
+    void pass(Checkpoint& checkpoint);
 
     double residual_relative() const { return largest_residual_ / std::max(throughput_, tiny); }
     double momentum_error_linear() const { return momentum_error_ / std::max(momentum_scale_, tiny); }
@@ -54,6 +57,8 @@ class GrainTracker {
     /// One row a tracked grain (position in Scene::grains given); zeroes its impulse. `elapsed`: time since
     /// the row before [s]. 3D: angle and omega are the components about z.
     std::vector<GrainRow> rows(const Scene<Dim>& scene, StepContext<Dim>& now, double elapsed);
+
+    void pass(Checkpoint& checkpoint);
 
   private:
     std::vector<int> grains_;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <map>
+#include <optional>
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
@@ -15,6 +17,7 @@
 #include "src/results/progress.hpp"
 #include "src/results/stop_signals.hpp"
 #include "src/results/writer.hpp"
+#include "src/sim/checkpoint.hpp"
 #include "src/sim/observe.hpp"
 #include "src/sim/step.hpp"
 
@@ -37,6 +40,7 @@ double peak_memory_bytes() {
 class Schedule {
   public:
     explicit Schedule(double interval) : interval_(interval) {}
+    void pass(Checkpoint& checkpoint) { checkpoint.value("next due", next_); }
     bool due(double time, double dt) {
         if (time < next_ - 0.5 * dt) return false;
         while (next_ <= time + 0.5 * dt) next_ += interval_;
@@ -47,21 +51,40 @@ class Schedule {
     double interval_, next_ = 0.0;
 };
 
+/// A run that goes on.
+struct Stopped {
+    Checkpoint checkpoint;  ///< its origin has been read
+    std::string refused;    ///< why it is not the last one; empty: it is
+};
+
 template <int Dim>
 class Run {
   public:
-    Run(const Deck& deck, const RunOptions& options)
+    /// `stopped`: goes on from there.
+    Run(const Deck& deck, const RunOptions& options, const RunOrigin& origin, Stopped* stopped)
         : deck_(deck),
           options_(options),
-          writer_(writer_options(deck, options)),
-          scene_(make_scene<Dim>(deck)) {
+          origin_(origin),
+          resumed_(stopped != nullptr),
+          scene_(make_scene<Dim>(deck)),
+          frames_(deck.output.interval > 0.0 ? deck.output.interval : deck.time.end / 100.0),
+          rows_(deck.output.history_interval > 0.0 ? deck.output.history_interval : deck.time.end / 1000.0) {
+        reset_context();
+        WriterOptions files = writer_options();
+        if (stopped) {
+            tracker_.emplace(*scene_, deck_);
+            files.resumed.emplace();
+            pass(stopped->checkpoint, *files.resumed);
+        }
+        writer_.emplace(files);
+        if (stopped && !stopped->refused.empty()) warn(stopped->refused + "; the checkpoint before is used");
         summary_.version = QUERN_VERSION;
         summary_.title = deck.title;
         summary_.dimension = Dim;
         summary_.threads = parallel::n_threads();
         summary_.instructions = batch_loops(deck.compute.instructions).name;
-        summary_.deck_hash = deck_hash(deck);
-        writer_.write_text("deck.resolved.yaml", resolved_yaml(deck));
+        summary_.deck_hash = origin.deck_hash;
+        if (!resumed_) writer_->write_text("deck.resolved.yaml", resolved_yaml(deck));
         summary_.n_particles = scene_->particles.size();
         summary_.n_bonds = scene_->n_bonds;
         summary_.n_grains = static_cast<std::int64_t>(scene_->grains.size());
@@ -74,7 +97,12 @@ class Run {
         host_line();
         RunOutcome outcome = RunOutcome::done;
         try {
-            prepare();
+            if (resumed_) {
+                writer_->log(fmt::format("goes on from step {}, t = {:.6g} s", now_.step, now_.time));
+            } else {
+                prepare();
+                tracker_.emplace(*scene_, deck_);
+            }
             outcome = march();
             summary_.outcome = outcome == RunOutcome::done ? "done" : "interrupted";
         } catch (const SimulationError& error) {
@@ -83,7 +111,7 @@ class Run {
                 message += fmt::format(" (time.step {:.4g} s is above the stable step {:.4g} s)", now_.dt,
                                        summary_.stable_step);
             summary_.outcome = "failed: " + message;
-            writer_.log(summary_.outcome);
+            writer_->log(summary_.outcome);
             close();
             throw SimulationError(message);
         }
@@ -92,15 +120,46 @@ class Run {
     }
 
   private:
-    static WriterOptions writer_options(const Deck& deck, const RunOptions& options) {
+    WriterOptions writer_options() const {
         WriterOptions out;
-        out.directory = options.directory;
+        out.directory = options_.directory;
         out.dimension = Dim;
-        out.vtp = deck.output.vtp;
-        out.title = deck.title;
-        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck.grid.origin[a]);
-        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck.grid.origin[a] + deck.grid.extent[a]);
+        out.vtp = deck_.output.vtp;
+        out.title = deck_.title;
+        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a]);
+        for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a] + deck_.grid.extent[a]);
         return out;
+    }
+
+    /// All that the rest of the run depends on.
+    void pass(Checkpoint& checkpoint, ResultPosition& position) {
+        std::int64_t shapes = shapes_hash(*scene_);
+        checkpoint.value("shapes", shapes);
+        if (shapes != shapes_hash(*scene_))
+            throw InputError(options_.directory, "other meshes or shapes than at the checkpoint",
+                             "the files that the run began with");
+        pass_position(checkpoint, position);
+        pass_state(checkpoint, *scene_, now_);
+        observer_.pass(checkpoint);
+        tracker_->pass(checkpoint);
+        frames_.pass(checkpoint);
+        rows_.pass(checkpoint);
+        checkpoint.value("last row", last_row_);
+        StageTimes& s = now_.stages;
+        for (double* seconds : {&s.internal_forces, &s.loads, &s.kick, &s.contact, &s.drift, &s.output})
+            checkpoint.value("stage seconds", *seconds);
+        checkpoint.value("wall seconds", earlier_seconds_);
+    }
+
+    void save() {
+        Checkpoint checkpoint;
+        pass_origin(checkpoint, origin_);
+        ResultPosition position = writer_->position();
+        const double before = earlier_seconds_;
+        earlier_seconds_ += seconds_since(start_);
+        pass(checkpoint, position);
+        earlier_seconds_ = before;
+        write_checkpoint(options_.directory, checkpoint);
     }
 
     void choose_time_step() {
@@ -117,9 +176,9 @@ class Run {
     void host_line() {
         char host[256] = "unknown";
         gethostname(host, sizeof host - 1);
-        writer_.log(
+        writer_->log(
             fmt::format("Quern {} on {}, {} threads: {}", QUERN_VERSION, host, summary_.threads, deck_.file));
-        writer_.log(
+        writer_->log(
             fmt::format("{} grains, {} particles, {} bonds; time step {:.6g} s (stable {:.6g} s), {} steps",
                         summary_.n_grains, summary_.n_particles, summary_.n_bonds, summary_.time_step,
                         summary_.stable_step, n_steps_));
@@ -127,7 +186,7 @@ class Run {
 
     void warn(const std::string& text) {
         ++warnings_[text];
-        writer_.log("warning: " + text);
+        writer_->log("warning: " + text);
     }
 
     /// Relaxes under the loads of the deck's prepare section, then gives the initial velocities.
@@ -155,7 +214,7 @@ class Run {
                     FrictionTable(static_cast<int>(deck_.materials.size()), *deck_.prepare.friction);
             const auto steps = static_cast<std::int64_t>(std::ceil(deck_.prepare.duration / now_.dt));
             Progress progress(options_.progress_terminal, deck_.prepare.duration,
-                              [&](const std::string& line) { writer_.log("prepare: " + line); });
+                              [&](const std::string& line) { writer_->log("prepare: " + line); });
             for (std::int64_t i = 0; i < steps && !stop_requested(); ++i) {
                 kick(*scene_, now_);
                 drift(*scene_, now_);
@@ -184,29 +243,27 @@ class Run {
     }
 
     RunOutcome march() {
-        const double end = deck_.time.end;
-        Schedule frames(deck_.output.interval > 0.0 ? deck_.output.interval : end / 100.0);
-        Schedule rows(deck_.output.history_interval > 0.0 ? deck_.output.history_interval : end / 1000.0);
-        GrainTracker<Dim> tracker(*scene_, deck_);
-        Observer<Dim> observer;
-        Progress progress(options_.progress_terminal, end,
-                          [&](const std::string& line) { writer_.log(line); });
+        Progress progress(options_.progress_terminal, deck_.time.end,
+                          [&](const std::string& line) { writer_->log(line); });
         start_ = Clock::now();
-        double last_row = 0.0;
+        const std::int64_t first_step = now_.step;
         for (;;) {
+            const bool stop = stop_requested(), last = now_.step >= n_steps_ || stop;
+            const bool due = deck_.output.checkpoint.every > 0 &&
+                             now_.step % deck_.output.checkpoint.every == 0 && now_.step > first_step;
+            if ((stop || due) && !now_.first) save();
             kick(*scene_, now_);
             const auto output_start = Clock::now();
-            if (now_.first) observer.start(*scene_, now_);
-            const bool last = now_.step >= n_steps_ || stop_requested();
-            if (rows.due(now_.time, now_.dt) || last) {
-                write_rows(observer, tracker, now_.time - last_row);
-                last_row = now_.time;
+            if (now_.first) observer_.start(*scene_, now_);
+            if (rows_.due(now_.time, now_.dt) || last) {
+                write_rows(now_.time - last_row_);
+                last_row_ = now_.time;
             }
-            if (frames.due(now_.time, now_.dt) || last) {
+            if (frames_.due(now_.time, now_.dt) || last) {
                 make_frame(*scene_, now_, frame_);
-                frame_ = writer_.add_frame(std::move(frame_));
+                frame_ = writer_->add_frame(std::move(frame_));
             }
-            progress.update(now_.step, now_.time, observer.residual_relative());
+            progress.update(now_.step, now_.time, observer_.residual_relative());
             now_.stages.output += seconds_since(output_start);
             if (last) break;
             drift(*scene_, now_);
@@ -215,18 +272,18 @@ class Run {
         return now_.step >= n_steps_ ? RunOutcome::done : RunOutcome::interrupted;
     }
 
-    void write_rows(Observer<Dim>& observer, GrainTracker<Dim>& tracker, double elapsed) {
-        const HistoryRow row = observer.history(*scene_, now_);
-        writer_.add_history(row);
+    void write_rows(double elapsed) {
+        const HistoryRow row = observer_.history(*scene_, now_);
+        writer_->add_history(row);
         if (record_) record_->history.push_back(row);
-        for (const GrainRow& grain : tracker.rows(*scene_, now_, elapsed)) {
-            writer_.add_grain(grain);
+        for (const GrainRow& grain : tracker_->rows(*scene_, now_, elapsed)) {
+            writer_->add_grain(grain);
             if (record_) record_->grains.push_back(grain);
         }
         summary_.energy = row.energy;
-        summary_.residual_relative = observer.residual_relative();
-        summary_.momentum_error_linear = observer.momentum_error_linear();
-        summary_.momentum_error_angular = observer.momentum_error_angular();
+        summary_.residual_relative = observer_.residual_relative();
+        summary_.momentum_error_linear = observer_.momentum_error_linear();
+        summary_.momentum_error_angular = observer_.momentum_error_angular();
         if (row.energy.residual > 0.2 * row.energy.throughput && row.energy.residual > round_off_energy())
             throw SimulationError(unstable_message(row.energy));
     }
@@ -261,10 +318,10 @@ class Run {
 
     void close() {
         const auto output_start = Clock::now();
-        writer_.flush();
+        writer_->flush();
         now_.stages.output += seconds_since(output_start);
-        summary_.writer_seconds = writer_.busy_seconds();
-        summary_.wall_seconds = seconds_since(start_);
+        summary_.writer_seconds = writer_->busy_seconds();
+        summary_.wall_seconds = earlier_seconds_ + seconds_since(start_);
         summary_.steps = now_.step;
         summary_.simulated_time = now_.time;
         const double particle_steps =
@@ -291,18 +348,25 @@ class Run {
                     now_.first_unconverged),
                 now_.unconverged);
         for (const auto& [text, count] : warnings_) summary_.warnings.emplace_back(text, count);
-        writer_.log(fmt::format("{}: {} steps in {:.2f} s, {:.1f} ns per particle-step, state {}",
-                                summary_.outcome, summary_.steps, summary_.wall_seconds,
-                                summary_.ns_per_particle_step, summary_.state_hash));
-        writer_.finish(summary_);
+        writer_->log(fmt::format("{}: {} steps in {:.2f} s, {:.1f} ns per particle-step, state {}",
+                                 summary_.outcome, summary_.steps, summary_.wall_seconds,
+                                 summary_.ns_per_particle_step, summary_.state_hash));
+        writer_->finish(summary_);
         if (record_) record_->summary = summary_;
     }
 
     const Deck& deck_;
     RunOptions options_;
-    ResultWriter writer_;
+    RunOrigin origin_;
+    bool resumed_;
     std::unique_ptr<Scene<Dim>> scene_;
     StepContext<Dim> now_;
+    std::optional<GrainTracker<Dim>> tracker_;
+    Observer<Dim> observer_;
+    Schedule frames_, rows_;
+    double last_row_ = 0.0;         ///< time of it [s]
+    double earlier_seconds_ = 0.0;  ///< of the run before it was stopped
+    std::optional<ResultWriter> writer_;
     Frame frame_;
     std::int64_t n_steps_ = 0;
     Summary summary_;
@@ -311,12 +375,32 @@ class Run {
     Clock::time_point start_ = Clock::now();
 };
 
+RunOutcome run(const Deck& deck, const RunOptions& options, const RunOrigin& origin, Stopped* stopped,
+               RunRecord* record) {
+    if (options.threads > 0) parallel::set_threads(options.threads);
+    if (deck.dimension == 2) return Run<2>(deck, options, origin, stopped).go(record);
+    return Run<3>(deck, options, origin, stopped).go(record);
+}
+
 }  // namespace
 
 RunOutcome run_deck(const Deck& deck, const RunOptions& options, RunRecord* record) {
-    if (options.threads > 0) parallel::set_threads(options.threads);
-    if (deck.dimension == 2) return Run<2>(deck, options).go(record);
-    return Run<3>(deck, options).go(record);
+    const std::filesystem::path folder = std::filesystem::absolute(deck.file).parent_path();
+    return run(deck, options, {folder.string(), deck_hash(deck)}, nullptr, record);
+}
+
+RunOutcome resume_run(const RunOptions& options, RunRecord* record) {
+    Stopped stopped;
+    stopped.checkpoint = read_checkpoint(options.directory, stopped.refused);
+    RunOrigin origin;
+    pass_origin(stopped.checkpoint, origin);
+    const std::string file = options.directory + "/deck.resolved.yaml";
+    Deck deck = read_deck(file);
+    if (deck_hash(deck) != origin.deck_hash)
+        throw InputError(file, "a deck that was changed", "the one that the run began with");
+    for (ShapeDeck& shape : deck.shapes)
+        if (!shape.file.empty()) shape.file = (std::filesystem::path(origin.folder) / shape.file).string();
+    return run(deck, options, origin, &stopped, record);
 }
 
 }  // namespace quern

@@ -24,6 +24,11 @@ struct RunRecord {
 
 enum class RunOutcome { done, interrupted };
 
+/// Goes on with the run in options.directory from its last checkpoint, as if it had never been stopped: same
+/// bits at the end. `record` holds what comes from there on. Throws as run_deck, and InputError if there is
+/// no checkpoint or if deck or meshes are not those of the run.
+RunOutcome resume_run(const RunOptions& options, RunRecord* record = nullptr);
+
 /// Runs a deck and writes its results. Throws InputError, SimulationError (after writing what there is) or
 /// OutputError. `record` is filled if given. SIGINT and SIGTERM end the run cleanly.
 RunOutcome run_deck(const Deck& deck, const RunOptions& options, RunRecord* record = nullptr);

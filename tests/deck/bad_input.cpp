@@ -467,6 +467,7 @@ TEST_CASE("Deck: a bad override is named by its key") {
         {"materials.glass.densty=3",
          {"--set: materials.glass.densty", "unknown key", "did you mean density?"}},
         {"grains.2.scale=3", {"--set: grains.2.scale", "'2'", "a number from 0 to 1"}},
+        {"output.chekpoint.every=3", {"--set: output.chekpoint", "unknown key", "did you mean checkpoint?"}},
         {"title.x=3", {"--set: title.x", "'x'"}},
         {"contact.friction=-1", {"--set: contact.friction", "'-1'", ">= 0"}},
         {"time.end=5 m", {"--set: time.end", "a quantity in s"}},

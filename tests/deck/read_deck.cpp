@@ -145,6 +145,11 @@ TEST_CASE("read_deck: bond-based materials of the right Poisson ratio are taken"
     CHECK(read_text(third).materials[0].plane == PlaneState::stress);
 }
 
+TEST_CASE("read_deck: an override may begin a section that the deck does not have") {
+    CHECK(read_text(plain_deck, {"output.checkpoint.every=7"}).output.checkpoint.every == 7);
+    CHECK(read_text(plain_deck, {"compute.kernel=single"}).compute.kernel == ForceKernel::single);
+}
+
 TEST_CASE("read_deck: overrides come before parameters, and keep the unit of a parameter") {
     const auto gravity_x = [](const std::vector<std::string>& overrides) {
         return read_text(full_deck, overrides).gravity[0];

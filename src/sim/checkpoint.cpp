@@ -1,0 +1,90 @@
+#include "src/sim/checkpoint.hpp"
+
+#include <cstring>
+
+namespace quern {
+
+namespace {
+
+template <int Dim>
+void pass_ledger(Checkpoint& checkpoint, Ledger<Dim>& ledger) {
+    typename Ledger<Dim>::Entry& past = ledger.past;
+    checkpoint.value("ledger damping", past.damping);
+    checkpoint.value("ledger load", past.load);
+    checkpoint.value("ledger constraint", past.constraint);
+    checkpoint.value("ledger normal", past.normal);
+    checkpoint.value("ledger friction", past.friction);
+    checkpoint.value("ledger wall", past.wall);
+    checkpoint.value("ledger fracture", past.fracture);
+    checkpoint.value("ledger transfer", past.transfer);
+    checkpoint.value("ledger impulse", past.impulse);
+    checkpoint.value("ledger moment", past.moment);
+}
+
+}  // namespace
+
+template <int Dim>
+void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now) {
+    checkpoint.value("step", now.step);
+    checkpoint.value("time", now.time);
+    checkpoint.array("x", std::span(scene.particles.x));
+    checkpoint.array("v", std::span(scene.particles.v));
+    checkpoint.array("drift", std::span(scene.arrays.drift));
+    checkpoint.array("x start", std::span(scene.x_start));
+    checkpoint.array("bonds alive", std::span(scene.alive));
+    for (Wall<Dim>& wall : scene.walls) {
+        checkpoint.value("wall point", wall.point);
+        checkpoint.value("wall velocity", wall.velocity);
+    }
+    checkpoint.value("travelled", scene.travelled);
+    pass_ledger(checkpoint, now.ledger);
+    checkpoint.array("grain impulse", std::span(now.grain_impulse));
+    checkpoint.array("wall impulse", std::span(now.wall_impulse));
+    checkpoint.value("unconverged", now.unconverged);
+    checkpoint.value("first unconverged", now.first_unconverged);
+    checkpoint.value("newly broken", now.newly_broken);
+    checkpoint.value("contact nodes", now.contact_nodes);
+    checkpoint.value("contacts", now.contacts);
+    checkpoint.value("sweeps", now.sweeps);
+    checkpoint.value("searches", now.searches);
+    now.first = false;
+}
+
+template <int Dim>
+std::int64_t shapes_hash(const Scene<Dim>& scene) {
+    std::uint64_t hash = 14695981039346656037ull;
+    const auto add = [&](double value) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &value, sizeof bits);
+        for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 1099511628211ull;
+    };
+    for (const auto& shape : scene.shapes)
+        for (std::size_t i = 0; i < shape->X.size(); ++i) {
+            for (int a = 0; a < Dim; ++a) add(shape->X[i][a]);
+            add(shape->volume[i]);
+        }
+    return static_cast<std::int64_t>(hash);
+}
+
+void pass_origin(Checkpoint& checkpoint, RunOrigin& origin) {
+    for (std::string* text : {&origin.folder, &origin.deck_hash}) {
+        std::vector<std::uint8_t> letters(text->begin(), text->end());
+        checkpoint.vector("origin", letters);
+        text->assign(letters.begin(), letters.end());
+    }
+}
+
+void pass_position(Checkpoint& checkpoint, ResultPosition& position) {
+    checkpoint.value("frames", position.n_frames);
+    checkpoint.value("history bytes", position.history_bytes);
+    checkpoint.value("grains bytes", position.grains_bytes);
+    checkpoint.value("xdmf bytes", position.xdmf_bytes);
+    checkpoint.value("pvd bytes", position.pvd_bytes);
+}
+
+template void pass_state(Checkpoint&, Scene<2>&, StepContext<2>&);
+template void pass_state(Checkpoint&, Scene<3>&, StepContext<3>&);
+template std::int64_t shapes_hash(const Scene<2>&);
+template std::int64_t shapes_hash(const Scene<3>&);
+
+}  // namespace quern
