@@ -88,12 +88,17 @@ inline Pack keep(Pack a, unsigned lanes) {
 
 constexpr unsigned full = (1U << width) - 1U;
 
+enum class Breaking { none, tension, both };
+
 /// Lanes of bond b that are intact, after the break test if this pass makes it.
-template <bool breaking>
+template <Breaking breaking>
 inline unsigned intact(BatchState& s, int b, int lane, Pack squared, Pack squared_length) {
     unsigned on = (s.alive[b] >> lane) & full;
-    if constexpr (breaking) {
-        const unsigned torn = greater(squared, load(s.limit + lane) * squared_length) & on;
+    if constexpr (breaking != Breaking::none) {
+        unsigned torn = greater(squared, load(s.longest + lane) * squared_length);
+        if constexpr (breaking == Breaking::both)
+            torn |= greater(load(s.shortest + lane) * squared_length, squared);
+        torn &= on;
         if (torn != 0) [[unlikely]] {
             on &= ~torn;
             const unsigned char bits = static_cast<unsigned char>(torn << lane);

@@ -1,7 +1,6 @@
 // What BondBatch and UnionBatch share: rows of lanes, and the arrays of a thread.
 #pragma once
 
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -12,7 +11,7 @@ namespace quern {
 /// Arrays of one thread, grown to the largest batch it has met and then kept.
 struct BatchScratch {
     std::vector<LaneRow> x, v, f, dilatation;
-    LaneRow limit;
+    LaneRow longest, shortest;
     std::vector<int> broken_bond;
     std::vector<std::uint8_t> broken_lanes;
 
@@ -25,24 +24,36 @@ struct BatchScratch {
 
 /// Arrays for n nodes and n_bonds bonds; positions and velocities are left to fill in.
 template <int Dim, bool rate>
-BatchState make_batch_state(BatchScratch& scratch, std::size_t n, std::size_t n_bonds, int size,
-                            std::span<std::uint8_t> alive, double critical_stretch) {
+BatchState make_batch_state(BatchScratch& scratch, std::size_t n, std::span<std::uint8_t> alive) {
     BatchState state{};
     state.x = BatchScratch::at_least(scratch.x, n * Dim)->lane;
     state.v = rate ? BatchScratch::at_least(scratch.v, n * Dim)->lane : nullptr;
     state.f = BatchScratch::at_least(scratch.f, n * Dim)->lane;
     state.dilatation = BatchScratch::at_least(scratch.dilatation, n)->lane;
     state.alive = alive.empty() ? nullptr : alive.data();
-    if (!rate && state.alive != nullptr && std::isfinite(critical_stretch)) {
-        const double longest = (1.0 + critical_stretch) * (1.0 + critical_stretch);
-        for (int lane = 0; lane < batch_lanes; ++lane)  // an empty lane owns no bits that could break
-            scratch.limit.lane[lane] = lane < size ? longest : std::numeric_limits<double>::infinity();
-        state.limit = scratch.limit.lane;
-        const std::size_t most = 4 * n_bonds;  // the narrowest set goes through the bonds four times
-        state.broken_bond = BatchScratch::at_least(scratch.broken_bond, most);
-        state.broken_lanes = BatchScratch::at_least(scratch.broken_lanes, most);
-    }
     return state;
+}
+
+/// Lets bonds break where the limit of their lane says so; limit_of(lane) for every grain, all in the same
+/// directions.
+template <int Dim, class LimitOf>
+void set_break_limits(BatchScratch& scratch, BatchState& state, const GrainBatch<Dim>& batch,
+                      std::size_t n_bonds, LimitOf&& limit_of) {
+    const BreakLimit& first = limit_of(0);
+    if (state.alive == nullptr || !first.exists()) return;
+    for (int lane = 0; lane < batch_lanes; ++lane) {
+        const double scale = batch.grain[lane].scale;
+        const bool own = lane < batch.size;  // an empty lane owns no bits that could break
+        const double longest = own ? limit_of(lane).longest(scale) : std::numeric_limits<double>::infinity();
+        const double shortest = own ? limit_of(lane).shortest(scale) : 0.0;
+        scratch.longest.lane[lane] = longest * longest;
+        scratch.shortest.lane[lane] = shortest * shortest;
+    }
+    state.longest = scratch.longest.lane;
+    if (first.in_compression) state.shortest = scratch.shortest.lane;
+    const std::size_t most = 4 * n_bonds;  // the narrowest set goes through the bonds four times
+    state.broken_bond = BatchScratch::at_least(scratch.broken_bond, most);
+    state.broken_lanes = BatchScratch::at_least(scratch.broken_lanes, most);
 }
 
 /// The loop of a set for this dimension.

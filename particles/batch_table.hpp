@@ -7,12 +7,12 @@
 namespace quern::QUERN_BATCH_LOOPS {
 namespace {
 
-template <int Dim, bool rate, bool masked, bool breaking, class Topology>
+template <int Dim, bool rate, bool masked, Breaking breaking, class Topology>
 void both_passes(const Topology& t, BatchState& s) {
     for (int lane = 0; lane < batch_lanes; lane += width)
         if (t.node != nullptr) {
             dilate<Dim, rate, masked, breaking>(t, s, lane);
-            pull<Dim, rate, true, masked, false>(t, s, lane);
+            pull<Dim, rate, true, masked, Breaking::none>(t, s, lane);
         } else {
             pull<Dim, rate, false, masked, breaking>(t, s, lane);
         }
@@ -21,12 +21,12 @@ void both_passes(const Topology& t, BatchState& s) {
 template <int Dim, bool rate, class Topology>
 void evaluate(const Topology& t, BatchState& s) {
     s.n_broken = 0;
-    if (s.alive == nullptr)
-        both_passes<Dim, rate, false, false>(t, s);
-    else if (s.limit == nullptr || rate)
-        both_passes<Dim, rate, true, false>(t, s);
-    else
-        both_passes<Dim, rate, true, true>(t, s);
+    if (s.alive == nullptr) return both_passes<Dim, rate, false, Breaking::none>(t, s);
+    if constexpr (!rate) {
+        if (s.shortest != nullptr) return both_passes<Dim, rate, true, Breaking::both>(t, s);
+        if (s.longest != nullptr) return both_passes<Dim, rate, true, Breaking::tension>(t, s);
+    }
+    both_passes<Dim, rate, true, Breaking::none>(t, s);
 }
 
 template <class Topology>

@@ -80,11 +80,11 @@ BondBatch<Dim>::BondBatch(const Bonds<Dim>& bonds, const BondStiffness& stiffnes
 template <int Dim>
 template <bool rate>
 BrokenBonds BondBatch<Dim>::add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
-                                       double critical_stretch, double factor) const {
+                                       const BreakLimit& limit, double factor) const {
     thread_local BatchScratch scratch;
     const std::size_t n = first_.size() - 1;
-    BatchState state =
-        make_batch_state<Dim, rate>(scratch, n, bond_.size(), batch.size, alive, critical_stretch);
+    BatchState state = make_batch_state<Dim, rate>(scratch, n, alive);
+    set_break_limits(scratch, state, batch, bond_.size(), [&](int) -> const BreakLimit& { return limit; });
     to_rows<Dim>(batch, &GrainView<Dim>::x, true, scratch.x.data());
     if constexpr (rate) to_rows<Dim>(batch, &GrainView<Dim>::v, false, scratch.v.data());
     const BatchTopology topology{static_cast<int>(n), first_.data(), partner_.data(), bond_.data(),
@@ -104,14 +104,14 @@ BrokenBonds BondBatch<Dim>::add_forces(const GrainBatch<Dim>& batch, std::span<s
 
 template <int Dim>
 BrokenBonds BondBatch<Dim>::add_elastic_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
-                                               double critical_stretch) const {
-    return add_forces<false>(batch, alive, critical_stretch, 1.0);
+                                               const BreakLimit& limit) const {
+    return add_forces<false>(batch, alive, limit, 1.0);
 }
 
 template <int Dim>
 void BondBatch<Dim>::add_viscous_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
                                         double time) const {
-    add_forces<true>(batch, alive, std::numeric_limits<double>::infinity(), time);
+    add_forces<true>(batch, alive, {}, time);
 }
 
 template class BondBatch<2>;

@@ -14,6 +14,7 @@
 
 #include "particles/batch_types.hpp"
 #include "particles/bond_kernel.hpp"
+#include "particles/break_limit.hpp"
 #include "particles/instructions.hpp"
 
 namespace quern {
@@ -41,17 +42,17 @@ class BondBatch {
     BondBatch() = default;
     BondBatch(const Bonds<Dim>& bonds, const BondStiffness& stiffness, Instructions set);
 
-    /// f += forces of the extensions. `alive` [n_bonds], empty: all intact. Bonds stretched by more than
-    /// `critical_stretch` break before they pull: their bits are cleared. Safe from any number of threads.
+    /// f += forces of the extensions. `alive` [n_bonds], empty: all intact. Bonds beyond `limit` break before
+    /// they pull: their bits are cleared. Safe from any number of threads.
     BrokenBonds add_elastic_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
-                                   double critical_stretch) const;
+                                   const BreakLimit& limit) const;
     /// f += the same law with `time` [s] times the rate of extension in place of the extension.
     void add_viscous_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive, double time) const;
 
   private:
     template <bool rate>
     BrokenBonds add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive,
-                           double critical_stretch, double factor) const;
+                           const BreakLimit& limit, double factor) const;
 
     const BatchLoops* loops_ = nullptr;
     std::vector<int> first_;       // [n + 1]

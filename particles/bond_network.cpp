@@ -12,7 +12,10 @@ namespace quern {
 
 template <int Dim>
 BondNetwork<Dim>::BondNetwork(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel)
-    : material_(material), kernel_(kernel), bonds_(make_bonds(shape, material)) {
+    : material_(material),
+      kernel_(kernel),
+      bonds_(make_bonds(shape, material)),
+      limit_(make_break_limit<Dim>(material, bonds_.horizon)) {
     const auto check = [&](const char* key, double value) {
         if (!(value > 0.0))
             throw InputError(fmt::format("material '{}': {}", material.name, key),
@@ -70,14 +73,15 @@ double BondNetwork<Dim>::elastic_energy(const GrainView<Dim>& grain) const {
 
 template <int Dim>
 int BondNetwork<Dim>::break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const {
-    const double limit = grain.scale * (1.0 + material_.critical_stretch);
-    if (!std::isfinite(limit)) return 0;
+    if (!limit_.exists()) return 0;
+    const double up_to = grain.scale * limit_.longest(grain.scale);
+    const double down_to = grain.scale * limit_.shortest(grain.scale);
     int n_broken = 0;
     for (int i = 0; i < bonds_.n_nodes(); ++i)
         for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
-            const double longest = limit * bonds_.length[b];
-            if (alive[b] == 0 || (grain.x[bonds_.partner[b]] - grain.x[i]).squaredNorm() <= longest * longest)
-                continue;
+            const double longest = up_to * bonds_.length[b], shortest = down_to * bonds_.length[b];
+            const double squared = (grain.x[bonds_.partner[b]] - grain.x[i]).squaredNorm();
+            if (alive[b] == 0 || (squared <= longest * longest && squared >= shortest * shortest)) continue;
             alive[b] = 0;
             ++n_broken;
         }
@@ -94,6 +98,21 @@ void BondNetwork<Dim>::compute_damage(const GrainView<Dim>& grain, std::span<dou
         }
         damage[i] = broken / whole;
     }
+}
+
+template <int Dim>
+void BondNetwork<Dim>::compute_relative_stretch(const GrainView<Dim>& grain,
+                                                std::span<double> stretch) const {
+    std::fill(stretch.begin(), stretch.end(), 0.0);
+    for (int i = 0; i < bonds_.n_nodes(); ++i)
+        for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
+            const int j = bonds_.partner[b];
+            double s = bond_vector(grain, i, j).norm() / bonds_.length[b] - 1.0;
+            if (limit_.in_compression) s = std::abs(s);
+            s /= limit_.stretch_of(grain.scale);
+            stretch[i] = std::max(stretch[i], s);
+            stretch[j] = std::max(stretch[j], s);
+        }
 }
 
 template <int Dim>

@@ -43,7 +43,7 @@ class BondNetwork {
     /// add_internal_forces adds, after the bonds that are stretched too far have broken (cleared in `alive`,
     /// [n_bonds], empty: none can).
     BrokenBonds add_batch_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
-        return batch_.add_elastic_forces(batch, alive, material_.critical_stretch);
+        return batch_.add_elastic_forces(batch, alive, limit_);
     }
     void add_batch_damping(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const {
         batch_.add_viscous_forces(batch, alive, material_.bond_damping);
@@ -55,11 +55,18 @@ class BondNetwork {
     /// [J; 2D: J/m]
     double elastic_energy(const GrainView<Dim>& grain) const;
 
-    /// Clears alive [n_bonds] where |y|/(s xi) - 1 > critical_stretch; never sets it. Number newly broken.
+    /// Clears alive [n_bonds] where the stretch |y|/(s xi) - 1 is beyond `break_limit`; never sets it. Number
+    /// newly broken.
     int break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const;
 
     /// damage [n] = volume of the broken part of the family over that of the whole family, in [0, 1].
     void compute_damage(const GrainView<Dim>& grain, std::span<double> damage) const;
+
+    /// stretch [n] = max_j s_ij/s0 over all bonds of a node, broken ones included; s = |y|/(s xi) - 1 where
+    /// bonds break in tension only, its absolute value where they break in both directions. From 1 up the
+    /// bond that has it is broken. Source: Z of Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 14,
+    /// which takes |u_j - u_i|/xi for s and so grows when a grain turns; their code takes |s|.
+    void compute_relative_stretch(const GrainView<Dim>& grain, std::span<double> stretch) const;
 
     /// stress [n * 4: xx, yy, xy, zz | n * 6: xx, yy, zz, xy, yz, xz] = Cauchy stress [Pa] of the non-local
     /// deformation gradient over the intact bonds,
@@ -78,6 +85,7 @@ class BondNetwork {
     double horizon() const { return bonds_.horizon; }  ///< of scale 1 [m]
     const Bonds<Dim>& bonds() const { return bonds_; }
     const BondStiffness& stiffness() const { return stiffness_; }
+    const BreakLimit& break_limit() const { return limit_; }
 
   protected:
     BondNetwork(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel);
@@ -100,6 +108,7 @@ class BondNetwork {
     Material material_;
     KernelChoice kernel_;
     Bonds<Dim> bonds_;
+    BreakLimit limit_;
     BondKernel<Dim> fast_;
     BondBatch<Dim> batch_;
 

@@ -77,9 +77,11 @@ class Cells {
 };
 
 template <int Dim>
-void join(Bonds<Dim>& bonds, Influence kind, double closest, const std::string& where) {
+void join(Bonds<Dim>& bonds, const Material& material, double closest, const std::string& where) {
     const int n = bonds.n_nodes();
-    const double reach = bonds.horizon * (1.0 + 1e-9);  // a lattice distance equal to the horizon is inside
+    // A lattice distance equal to the horizon is on one side of it, whatever its last bits.
+    const double reach =
+        bonds.horizon * (material.horizon_rim == HorizonRim::included ? 1.0 + 1e-9 : 1.0 - 1e-9);
     const Cells<Dim> cells(bonds.X, reach);
     std::vector<int> row;
     bonds.first.assign(1, 0);
@@ -93,7 +95,7 @@ void join(Bonds<Dim>& bonds, Influence kind, double closest, const std::string& 
             const double xi = (bonds.X[j] - bonds.X[i]).norm();
             if (xi < closest)
                 throw InputError(where, fmt::format("nodes {} and {} at one place", i, j), "distinct nodes");
-            const double w = influence(kind, std::min(1.0, xi / bonds.horizon));
+            const double w = influence(material.influence, std::min(1.0, xi / bonds.horizon));
             if (w < 1e-9) continue;  // the rim of the cone: no force, so no bond to count or to break
             bonds.partner.push_back(j);
             bonds.length.push_back(xi);
@@ -101,6 +103,15 @@ void join(Bonds<Dim>& bonds, Influence kind, double closest, const std::string& 
         }
         bonds.first.push_back(bonds.n_bonds());
     }
+}
+
+/// beta of bonds.hpp.
+template <int Dim>
+void cut_volumes(Bonds<Dim>& bonds) {
+    if (bonds.length.empty()) return;
+    const double h = *std::min_element(bonds.length.begin(), bonds.length.end());
+    for (int b = 0; b < bonds.n_bonds(); ++b)
+        bonds.weight[b] *= std::min(1.0, (bonds.horizon + 0.5 * h - bonds.length[b]) / h);
 }
 
 template <int Dim>
@@ -124,7 +135,7 @@ void list_families(Bonds<Dim>& bonds) {
 }
 
 template <int Dim>
-void check_families(const Bonds<Dim>& bonds, double ratio, const std::string& where) {
+void check_families(const Bonds<Dim>& bonds, const Material& material, const std::string& where) {
     for (int i = 0; i < bonds.n_nodes(); ++i) {
         Mat<Dim> spread = Mat<Dim>::Zero();  // of the directions: 1/Dim times identity when they are even
         const std::span<const Neighbor> family = bonds.family_of(i);
@@ -138,7 +149,9 @@ void check_families(const Bonds<Dim>& bonds, double ratio, const std::string& wh
             fmt::format("node {} with {} neighbours within the horizon {:.4g} m", i, family.size(),
                         bonds.horizon),
             fmt::format("at least {} that are not all on one {}", Dim + 1, Dim == 2 ? "line" : "plane"),
-            fmt::format("raise horizon_ratio, now {:.4g}, or use more nodes", ratio));
+            material.horizon > 0.0
+                ? fmt::format("raise horizon, now {:.4g} m, or use more nodes", material.horizon)
+                : fmt::format("raise horizon_ratio, now {:.4g}, or use more nodes", material.horizon_ratio));
     }
 }
 
@@ -183,18 +196,19 @@ void sum_moments(Bonds<Dim>& bonds) {
 template <int Dim>
 Bonds<Dim> make_bonds(const Shape<Dim>& shape, const Material& material) {
     const std::string where = fmt::format("material '{}' on shape '{}'", material.name, shape.name);
-    if (!(material.horizon_ratio > 0.0) || !(shape.dx > 0.0) || shape.X.empty())
+    if (!(material.horizon_of(shape.dx) > 0.0) || !(shape.dx > 0.0) || shape.X.empty())
         throw InputError(where,
-                         fmt::format("horizon_ratio {}, spacing {} m, {} nodes", material.horizon_ratio,
+                         fmt::format("horizon {} m, spacing {} m, {} nodes", material.horizon_of(shape.dx),
                                      shape.dx, shape.X.size()),
-                         "a positive horizon_ratio and spacing, and nodes");
+                         "a positive horizon and spacing, and nodes");
     Bonds<Dim> bonds;
-    bonds.horizon = material.horizon_ratio * shape.dx;
+    bonds.horizon = material.horizon_of(shape.dx);
     bonds.X = shape.X;
     bonds.volume = shape.volume;
-    join(bonds, material.influence, 1e-6 * shape.dx, where);
+    join(bonds, material, 1e-6 * shape.dx, where);
+    if (material.volume_correction == VolumeCorrection::linear) cut_volumes(bonds);
     list_families(bonds);
-    check_families(bonds, material.horizon_ratio, where);
+    check_families(bonds, material, where);
 
     const int n = bonds.n_nodes();
     std::vector<double> family_volume(n, 0.0);

@@ -17,12 +17,20 @@ struct Neighbor {
     int bond;  ///< index of the undirected bond to it
 };
 
-/// Reference bonds of a shape at scale 1. Nodes are joined when 0 < xi <= horizon = horizon_ratio dx.
+/// Reference bonds of a shape at scale 1. Nodes are joined when 0 < xi <= horizon = horizon_ratio dx, or the
+/// length that the material gives; with HorizonRim::excluded when xi < horizon. The horizon of a grain of
+/// scale s is s times that of its shape, so that both have the same bonds.
 ///
-///     w_ij    = influence(xi/horizon) lambda_ij                                 no unit
+///     w_ij    = influence(xi/horizon) beta_ij lambda_ij                         no unit
 ///     m_i     = sum_j w_ij xi^2 V_j                                             [m^4 | m^5]
+///     beta    = 1, or with VolumeCorrection::linear  min(1, (horizon + h/2 - xi)/h)
+///               h the smallest distance of two nodes of the shape               [m]
 ///     lambda  = 1, or with SurfaceCorrection::volume  2 V0 / (Vf_i + Vf_j)
 ///     Vf_i    = sum_j V_j, family volume; V0 that of a full family              [m^2 | m^3]
+///
+/// beta is the share of a cell of width h that lies within the horizon. The public PeriDEM code has it (in m,
+/// theta and force, hence in w here), the paper of Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, has
+/// not. That code gives every grain the horizon of its material, whatever its scale; here it scales.
 ///
 /// Source of lambda: Le & Bobaru, Comput. Mech. 61 (2018) 499, "volume method".
 /// Differs: V0 is the mean over the bulk families of the shape itself, so that a lattice has lambda = 1

@@ -30,6 +30,24 @@ double ball_volume(double horizon) {
     return (Dim == 2 ? std::numbers::pi : 4.0 / 3.0 * std::numbers::pi) * std::pow(horizon, Dim);
 }
 
+/// int_0^1 w(r) r^power dr, power >= 1; no unit. The Gaussian goes down two powers at a time, by parts.
+inline double influence_moment(Influence kind, int power) {
+    const double p = power;
+    switch (kind) {
+        case Influence::constant:
+            return 1.0 / (p + 1.0);
+        case Influence::inverse:
+            return 1.0 / p;
+        case Influence::conical:
+            return 1.0 / (p + 1.0) - 1.0 / (p + 2.0);
+        case Influence::gaussian:
+            if (power == 0) return 0.25 * std::sqrt(std::numbers::pi) * std::erf(2.0);
+            return ((power == 1 ? 1.0 : (p - 1.0) * influence_moment(kind, power - 2)) - std::exp(-4.0)) /
+                   8.0;
+    }
+    return 0.0;
+}
+
 /// Weighted volume of the full continuous family,
 ///
 ///     m = int_ball w xi^2 dV = S horizon^(n+2) int_0^1 w(r) r^(n+1) dr      [m^4 | m^5]
@@ -37,25 +55,8 @@ double ball_volume(double horizon) {
 /// with n = Dim and S = 2 pi | 4 pi: what the sum over bonds tends to as the nodes get denser.
 template <int Dim>
 double weighted_ball_volume(Influence kind, double horizon) {
-    constexpr double n = Dim;
-    const double e4 = std::exp(-4.0);
-    double radial = 0.0;
-    switch (kind) {
-        case Influence::constant:
-            radial = 1.0 / (n + 2.0);
-            break;
-        case Influence::inverse:
-            radial = 1.0 / (n + 1.0);
-            break;
-        case Influence::conical:
-            radial = 1.0 / (n + 2.0) - 1.0 / (n + 3.0);
-            break;
-        case Influence::gaussian:
-            radial = Dim == 2 ? (1.0 - 5.0 * e4) / 32.0
-                              : 3.0 * std::sqrt(std::numbers::pi) * std::erf(2.0) / 256.0 - e4 * 11.0 / 64.0;
-            break;
-    }
-    return (Dim == 2 ? 2.0 : 4.0) * std::numbers::pi * std::pow(horizon, Dim + 2) * radial;
+    return (Dim == 2 ? 2.0 : 4.0) * std::numbers::pi * std::pow(horizon, Dim + 2) *
+           influence_moment(kind, Dim + 1);
 }
 
 }  // namespace quern

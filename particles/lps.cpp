@@ -9,16 +9,17 @@ template <int Dim>
 Lps<Dim>::Lps(const Shape<Dim>& shape, const Material& material, const KernelChoice& kernel)
     : BondNetwork<Dim>(shape, material, kernel) {
     const Bonds<Dim>& bonds = this->bonds_;
-    constexpr double n = Dim;
-    a_ = (Dim == 2 ? 8.0 : 15.0) * material.shear_modulus;
-    b_ = n * dilatational_modulus<Dim>(material) - a_ / n;
+    const bool space = uses_space_constants<Dim>(material);
+    n_ = space ? 3.0 : 2.0;
+    a_ = (space ? 15.0 : 8.0) * material.shear_modulus;
+    b_ = n_ * (space ? material.bulk_modulus : dilatational_modulus<Dim>(material)) - a_ / n_;
     m_ = bonds.moment;
     if (material.calibration == Calibration::none)
         m_.assign(m_.size(), weighted_ball_volume<Dim>(material.influence, bonds.horizon));
 
     BondStiffness stiffness;
     for (int i = 0; i < bonds.n_nodes(); ++i) {
-        stiffness.node.push_back(n * b_ / (m_[i] * m_[i] * bonds.volume[i]));
+        stiffness.node.push_back(n_ * b_ / (m_[i] * m_[i] * bonds.volume[i]));
         stiffness.end.push_back(a_ / m_[i]);
         for (int k = bonds.first[i]; k < bonds.first[i + 1]; ++k) {
             const int j = bonds.partner[k];
@@ -43,7 +44,7 @@ void Lps<Dim>::add_printed_forces(const GrainView<Dim>& grain, std::span<Vec<Dim
         for (const auto [j, k] : bonds.family_of(i)) {
             if (!this->is_alive(grain, k)) continue;
             const double xi = bonds.length[k], e = this->bond_vector(grain, i, j).norm() - xi;
-            theta[i] += Dim / m_[i] * bonds.weight[k] * xi * e * bonds.volume[j];
+            theta[i] += n_ / m_[i] * bonds.weight[k] * xi * e * bonds.volume[j];
         }
     this->add_reference_forces(grain, f, [&](int i, int j, int k, double now) {
         const double w = bonds.weight[k], xi = bonds.length[k], e = now - xi;

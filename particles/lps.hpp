@@ -18,6 +18,16 @@ namespace quern {
 ///     n = 3: Kn = K, a = 15 G;  n = 2: Kn = K + G/3 (plane strain), 9 K G/(3 K + 4 G) (plane stress), a = 8
 ///     G
 ///
+/// Constants::three_dimensional takes n = 3, Kn = K, a = 15 G in the plane as well, as Jha et al., J. Mech.
+/// Phys. Solids 151 (2021) 104376, eqs 7 to 13, and the public PeriDEM code do. Then theta is 3/2 of the
+/// in-plane dilatation, since sum w xi (xi.A.xi)/xi V averages to m/2 tr A and not to m/3 tr A, and of a
+/// strain A
+///
+///     W = (K/2 - 5 G/6) (3/2 tr A)^2 + 15 G/16 ((tr A)^2 + 2 A:A) = 9 K/8 (tr A)^2 + 15 G/8 dev A : dev A
+///
+/// so the body has the area modulus 9 K/4 and the shear modulus 15 G/8. At K = 5 G/3 (Poisson ratio 1/4)
+/// both are 15/8 of plane strain, and its waves are 1.37 times as fast.
+///
 /// W is Kn theta^2/2 plus the deviatoric energy a/(2m) sum w (e - theta xi/n)^2 V written out. With broken
 /// bonds it is this form, not the deviatoric one, of which t is the exact gradient; it stays >= Kn theta^2/2.
 ///
@@ -44,6 +54,7 @@ class Lps : public BondNetwork<Dim> {
     void add_printed_forces(const GrainView<Dim>& grain, std::span<Vec<Dim>> f) const;
 
     std::vector<double> m_;  // [n] weighted volume in use
+    double n_ = Dim;         // of the constants
     double a_ = 0.0;         // [Pa]
     double b_ = 0.0;         // n Kn - a/n [Pa]
 };

@@ -6,8 +6,9 @@
 
 namespace quern {
 
-enum class ForceModel { lps, bond_based };
+enum class ForceModel { lps, bond_based, peridem };  ///< peridem: lps as set by `set_peridem_options`
 enum class PlaneState { strain, stress };
+enum class Constants { plane, three_dimensional };  ///< of lps in 2D
 enum class Influence {
     constant,
     inverse,
@@ -16,6 +17,10 @@ enum class Influence {
 };  ///< 1, 1/r, 1 - r, exp(-(2 r)^2); r = xi/horizon
 enum class Calibration { none, discrete };
 enum class SurfaceCorrection { none, volume };
+enum class VolumeCorrection { none, linear };
+enum class HorizonRim { included, excluded };  ///< bonds exactly as long as the horizon
+enum class BreaksIn { tension, both };
+enum class StretchFormula { energy_balance, peridem };
 
 /// One material of the deck. SI units; 2D quantities are per metre of thickness.
 struct Material {
@@ -25,13 +30,38 @@ struct Material {
     double density = 0.0;                   ///< [kg/m^3]
     double bulk_modulus = 0.0;              ///< K, three-dimensional [Pa]
     double shear_modulus = 0.0;             ///< G [Pa]
-    double horizon_ratio = 3.015;           ///< horizon / Shape::dx
+    Constants constants = Constants::plane;
+    double horizon_ratio = 3.015;  ///< horizon / Shape::dx
+    double horizon = 0.0;          ///< of a grain of scale 1, in the place of the ratio; 0: the ratio [m]
+    HorizonRim horizon_rim = HorizonRim::included;
     Influence influence = Influence::conical;
     Calibration calibration = Calibration::discrete;
+    VolumeCorrection volume_correction = VolumeCorrection::none;
     SurfaceCorrection surface_correction = SurfaceCorrection::none;
     double bond_damping =
         0.0;  ///< Kelvin-Voigt time: stress of the strain rate = bond_damping * stiffness [s]
-    double critical_stretch = std::numeric_limits<double>::infinity();  ///< bonds break above it, in tension
+    double critical_stretch = std::numeric_limits<double>::infinity();  ///< bonds break above it
+    double fracture_energy = 0.0;  ///< Gc, from which the critical stretch follows; 0: it is given [J/m^2]
+    StretchFormula critical_stretch_formula = StretchFormula::energy_balance;
+    BreaksIn breaks_in = BreaksIn::tension;
+
+    double horizon_of(double dx) const { return horizon > 0.0 ? horizon : horizon_ratio * dx; }  ///< [m]
+    bool can_break() const {
+        return fracture_energy > 0.0 || critical_stretch < std::numeric_limits<double>::infinity();
+    }
 };
+
+/// The options in which the LPS of the public PeriDEM code 0.1.0 (J. Open Source Softw. 9 (2024) 6710; Jha et
+/// al., J. Mech. Phys. Solids 151 (2021) 104376) differs from ours: constants of space in the plane, volumes
+/// at the rim of a family cut, no bond as long as the horizon, bonds that break in compression as well, and
+/// its own critical stretch. Each may be set back.
+inline void set_peridem_options(Material& material) {
+    material.model = ForceModel::peridem;
+    material.constants = Constants::three_dimensional;
+    material.volume_correction = VolumeCorrection::linear;
+    material.horizon_rim = HorizonRim::excluded;
+    material.breaks_in = BreaksIn::both;
+    material.critical_stretch_formula = StretchFormula::peridem;
+}
 
 }  // namespace quern

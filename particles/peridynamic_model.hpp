@@ -11,7 +11,8 @@ namespace quern {
 template <int Dim>
 using PeridynamicModel = std::variant<Lps<Dim>, BondBased<Dim>>;
 
-/// The model that material.model names, for one shape. Throws InputError as its constructor does.
+/// The model that material.model names (peridem: Lps with the options of the material), for one shape. Throws
+/// InputError as its constructor does.
 template <int Dim>
 PeridynamicModel<Dim> make_model(const Shape<Dim>& shape, const Material& material,
                                  const KernelChoice& kernel = {}) {

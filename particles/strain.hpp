@@ -18,6 +18,13 @@ inline constexpr int n_stress = Dim == 2 ? 4 : 6;
 template <int Dim>
 double dilatational_modulus(const Material& material);
 
+/// Whether the law of a material takes its constants from space: Constants::three_dimensional, see lps.hpp.
+template <int Dim>
+bool uses_space_constants(const Material& material) {
+    return Dim == 3 ||
+           (material.model != ForceModel::bond_based && material.constants == Constants::three_dimensional);
+}
+
 /// Cauchy stress [Pa] of a St Venant-Kirchhoff solid at the deformation gradient F [no unit]:
 ///
 ///     E = (F^T F - 1)/2,    S = (K - 2G/3) tr(E) 1 + 2 G E,    sigma = F S F^T / det F

@@ -93,16 +93,15 @@ double CellUnion<Dim>::fill() const {
 template <int Dim>
 UnionBatch<Dim>::UnionBatch(std::span<const UnionMember<Dim>> members, CellUnion<Dim> cells,
                             const Material& material, Instructions set)
-    : loops_(&batch_loops(set)),
-      critical_stretch_(material.critical_stretch),
-      damping_(material.bond_damping) {
+    : loops_(&batch_loops(set)), damping_(material.bond_damping) {
+    for (std::size_t lane = 0; lane < members.size(); ++lane) limit_[lane] = members[lane].limit;
     for (const int j : cells.partner) bond_.push_back({j, 0, 0});
     set_lengths(members, cells);
     set_weights(members, cells);
     first_ = std::move(cells.first);
     node_of_ = std::move(cells.node_of);
     set_nodes(members);
-    if (std::isfinite(critical_stretch_)) bond_of_ = std::move(cells.bond_of);
+    if (limit_[0].exists()) bond_of_ = std::move(cells.bond_of);
 }
 
 template <int Dim>
@@ -208,8 +207,10 @@ BrokenBonds UnionBatch<Dim>::add_forces(const GrainBatch<Dim>& batch, std::span<
                                         double factor) const {
     thread_local BatchScratch scratch;
     const std::size_t n = first_.size() - 1;
-    BatchState state =
-        make_batch_state<Dim, rate>(scratch, n, bond_.size(), batch.size, alive, critical_stretch_);
+    BatchState state = make_batch_state<Dim, rate>(scratch, n, alive);
+    if constexpr (!rate)
+        set_break_limits(scratch, state, batch, bond_.size(),
+                         [&](int lane) -> const BreakLimit& { return limit_[lane]; });
     to_rows(batch, &GrainView<Dim>::x, true, scratch.x.data());
     if constexpr (rate) to_rows(batch, &GrainView<Dim>::v, false, scratch.v.data());
     const bool dilating = !node_.empty();

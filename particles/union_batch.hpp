@@ -27,6 +27,7 @@ struct UnionMember {
     const std::vector<IntVec<Dim>>* cell = nullptr;
     const Bonds<Dim>* bonds = nullptr;
     const BondStiffness* stiffness = nullptr;
+    BreakLimit limit;
 };
 
 /// The cells and bonds that at least one of eight members has.
@@ -71,7 +72,8 @@ class UnionBatch {
     BrokenBonds add_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive, double factor) const;
 
     const BatchLoops* loops_;
-    double critical_stretch_, damping_;         // no unit, [s]
+    double damping_;  // [s]
+    std::array<BreakLimit, batch_lanes> limit_;
     std::vector<int> first_;                    // [n + 1]
     std::vector<UnionBond> bond_;               // [n_bonds]
     std::vector<LaneRow> length_, weight_;      // see UnionTopology

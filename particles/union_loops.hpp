@@ -17,7 +17,7 @@ namespace quern::QUERN_BATCH_LOOPS {
 namespace {
 
 /// P - q at every node; P alone if `rate`.
-template <int Dim, bool rate, bool masked, bool breaking>
+template <int Dim, bool rate, bool masked, Breaking breaking>
 void dilate(const UnionTopology& t, BatchState& s, int lane) {
     double* const D = s.dilatation + lane;
     for (int i = 0; i < t.n; ++i) store(D + batch_lanes * i, all(0.0));
@@ -51,7 +51,7 @@ void dilate(const UnionTopology& t, BatchState& s, int lane) {
     }
 }
 
-template <int Dim, bool rate, bool dilating, bool masked, bool breaking>
+template <int Dim, bool rate, bool dilating, bool masked, Breaking breaking>
 void pull(const UnionTopology& t, BatchState& s, int lane) {
     for (int k = 0; k < Dim * t.n; ++k) store(s.f + batch_lanes * k + lane, all(0.0));
     for (int i = 0; i < t.n; ++i) {

@@ -14,7 +14,8 @@ template <int Dim>
 UnionMember<Dim> member_of(const Scene<Dim>& scene, int g) {
     return std::visit(
         [&](const auto& model) {
-            return UnionMember<Dim>{&scene.grains[g].shape->cell, &model.bonds(), &model.stiffness()};
+            return UnionMember<Dim>{&scene.grains[g].shape->cell, &model.bonds(), &model.stiffness(),
+                                    model.break_limit()};
         },
         scene.group_of(g).model);
 }

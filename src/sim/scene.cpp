@@ -103,7 +103,7 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
             group.first_grain = static_cast<int>(scene.grains.size());
             group.bond_damping = material.bond_damping;
             group.damped = material.bond_damping > 0.0;
-            group.breakable = std::isfinite(material.critical_stretch);
+            group.breakable = material.can_break();
             group.density = material.density;
             scene.groups.push_back(std::move(group));
         }

@@ -65,12 +65,47 @@ TEST_CASE("Bonds: the rim of the cone counts for nothing and is left out") {
     CHECK(make_bonds(shape, material).family_of(24).size() == 28);
 }
 
+TEST_CASE("Bonds: a length as horizon, its rim left out, and volumes cut there") {
+    Material material = make_material(ForceModel::lps, PlaneState::strain, 2);
+    material.influence = Influence::constant;
+    material.horizon_ratio = 3.0;
+    const Shape<2> shape = make_lattice<2>({9, 9}, 0.1);
+    const Bonds<2> by_ratio = make_bonds(shape, material);
+    material.horizon_ratio = 7.0;
+    material.horizon = 0.3;
+    const Bonds<2> by_length = make_bonds(shape, material);
+    CHECK(by_length.horizon == 0.3);
+    CHECK(by_length.partner == by_ratio.partner);
+    CHECK(by_length.moment == by_ratio.moment);
+    material.horizon_rim = HorizonRim::excluded;
+    CHECK(make_bonds(shape, material).family_of(40).size() == 24);
+
+    material.horizon_rim = HorizonRim::included;
+    material.volume_correction = VolumeCorrection::linear;
+    const Bonds<2> cut = make_bonds(shape, material);
+    double m = 0.0;
+    for (const auto& to : cut.family_of(40)) {
+        // of a family of 28, cells of width 0.1 around the nodes at 0.283 and 0.3 reach beyond the horizon
+        const double xi = cut.length[to.bond];
+        const double share = xi > 0.29 ? 0.5 : xi > 0.27 ? 3.5 - std::sqrt(8.0) : 1.0;
+        CHECK(cut.weight[to.bond] == doctest::Approx(share).epsilon(1e-12));
+        m += share * xi * xi * 0.01;
+    }
+    CHECK(cut.moment[40] == doctest::Approx(m).epsilon(1e-12));
+}
+
 TEST_CASE("Bonds: families that cannot carry load are refused by name") {
     Material material = make_material(ForceModel::lps, PlaneState::strain, 2);
     material.horizon_ratio = 0.9;
     const std::string lonely = message_of([&] { make_bonds(make_lattice<2>({5, 5}, 0.01), material); });
     CHECK(has(lonely, "material 'test' on shape 'lattice': got node 0 with 0 neighbours"));
     CHECK(has(lonely, "raise horizon_ratio, now 0.9"));
+    material.horizon = 0.009;
+    CHECK(has(message_of([&] {
+                  make_bonds(make_lattice<2>({5, 5}, 0.01), material);
+              }),
+              "raise horizon, now 0.009 m"));
+    material.horizon = 0.0;
     material.horizon_ratio = 3.015;
     CHECK(has(message_of([&] { make_bonds(make_lattice<2>({9, 1}, 0.01), material); }), "on one line"));
     CHECK(has(message_of([&] { make_bonds(make_lattice<3>({5, 5, 1}, 0.01), material); }), "on one plane"));

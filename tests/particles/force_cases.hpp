@@ -27,6 +27,7 @@ inline Material make_material(ForceModel model, PlaneState plane, int dim) {
     const double springs = dim == 2 && plane == PlaneState::stress ? 3.0 / 8.0 : 3.0 / 5.0;
     material.shear_modulus = (model == ForceModel::bond_based ? springs : 0.25) * material.bulk_modulus;
     material.horizon_ratio = dim == 2 ? 3.015 : 2.2;
+    if (model == ForceModel::peridem) set_peridem_options(material);
     return material;
 }
 
@@ -34,15 +35,16 @@ inline Material make_material(ForceModel model, PlaneState plane, int dim) {
 template <int Dim, class Visit>
 void for_each_material(Visit&& visit) {
     static const char* const influences[] = {"1", "1/r", "1 - r", "Gaussian"};
-    for (const ForceModel model : {ForceModel::lps, ForceModel::bond_based})
+    static const char* const laws[] = {"LPS", "bond-based", "PeriDEM"};
+    for (const ForceModel model : {ForceModel::lps, ForceModel::bond_based, ForceModel::peridem})
         for (const PlaneState plane : {PlaneState::strain, PlaneState::stress}) {
-            if (Dim == 3 && plane == PlaneState::stress) continue;
+            if (plane == PlaneState::stress && (Dim == 3 || model == ForceModel::peridem)) continue;
             for (const Influence influence :
                  {Influence::constant, Influence::inverse, Influence::conical, Influence::gaussian}) {
                 Material material = make_material(model, plane, Dim);
                 material.influence = influence;
                 CAPTURE(Dim);
-                const std::string law = model == ForceModel::lps ? "LPS" : "bond-based";
+                const std::string law = laws[static_cast<int>(model)];
                 CAPTURE(law);
                 const std::string state = plane == PlaneState::strain ? "plane strain" : "plane stress";
                 CAPTURE(state);

@@ -183,3 +183,39 @@ TEST_CASE("Internal forces: grains of several sizes and models on several thread
     const std::vector<Field<2>> one = run(1), four = run(4);
     for (std::size_t g = 0; g < one.size(); ++g) REQUIRE(largest_difference(one[g], four[g]) == 0.0);
 }
+
+TEST_CASE("Internal forces: those of the public PeriDEM code, written out as it computes them") {
+    Material material = make_material(ForceModel::peridem, PlaneState::strain, 2);
+    material.horizon = 0.031;
+    const Shape<2> shape = make_test_shape<2>();
+    const Field<2> x = make_deformed(shape, 1.0);
+    const int n = shape.n_nodes();
+    const double K = material.bulk_modulus, G = material.shear_modulus, eps = material.horizon;
+    double h = eps;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j) h = std::min(h, (shape.X[j] - shape.X[i]).norm());
+    const auto visit_family = [&](int i, auto&& visit) {
+        for (int j = 0; j < n; ++j) {
+            const double r = (shape.X[j] - shape.X[i]).norm();
+            if (j == i || r >= eps) continue;
+            const double V = shape.volume[j] * (r > eps - 0.5 * h ? (eps + 0.5 * h - r) / h : 1.0);
+            visit(j, r, 12.0 * (1.0 - r / eps), V, (x[j] - x[i]).norm() - r);
+        }
+    };
+    std::vector<double> m(n, 0.0), theta(n, 0.0);
+    for (int i = 0; i < n; ++i)
+        visit_family(i, [&](int, double r, double J, double V, double) { m[i] += r * r * J * V; });
+    for (int i = 0; i < n; ++i)
+        visit_family(
+            i, [&](int, double r, double J, double V, double e) { theta[i] += 3.0 / m[i] * r * e * J * V; });
+    Field<2> expected(n, Vec<2>::Zero());
+    for (int i = 0; i < n; ++i)
+        visit_family(i, [&](int j, double r, double J, double V, double e) {
+            const double T = J * (r * (theta[i] / m[i] + theta[j] / m[j]) * (3.0 * K - 5.0 * G) +
+                                  15.0 * G * e * (1.0 / m[i] + 1.0 / m[j]));
+            expected[i] += shape.volume[i] * T * V * (x[j] - x[i]).normalized();
+        });
+    // measured 6.4e-15, bound 1e-12
+    CHECK(largest_difference(forces(make_model(shape, material), {1.0, x, {}, {}}), expected) <
+          1e-12 * largest(expected));
+}

@@ -17,6 +17,8 @@ namespace {
 ///
 ///     bond-based  D = sum C w (1 - cos k.xi) d d^T V
 ///     LPS         D = sum (2 a/m) w (1 - cos k.xi) d d^T V + (n b/m^2) h h^T,   h = sum w sin(k.xi) xi V
+///     PeriDEM     the same with n = 3, a = 15 G, b = 3 K - 5 G in the plane as well, and volumes cut at the
+///     rim
 ///
 /// d = xi/|xi|, summed over the whole stencil; h is what is left of the dilatation of both ends.
 template <int Dim>
@@ -25,6 +27,7 @@ Mat<Dim> make_wave_matrix(const Material& material, double dx, const Vec<Dim>& k
     double m = 0.0;
     Mat<Dim> springs = Mat<Dim>::Zero();
     Vec<Dim> h = Vec<Dim>::Zero();
+    const bool cut = material.volume_correction == VolumeCorrection::linear;
     const int reach = 4;
     const int width = 2 * reach + 1;
     for (int id = 0; id < (Dim == 2 ? width * width : width * width * width); ++id) {
@@ -36,12 +39,17 @@ Mat<Dim> make_wave_matrix(const Material& material, double dx, const Vec<Dim>& k
         }
         const double length = xi.norm();
         if (length == 0.0 || length > horizon) continue;
-        const double w = influence(material.influence, length / horizon);
+        const double share = cut && length > horizon - 0.5 * dx ? (horizon + 0.5 * dx - length) / dx : 1.0;
+        const double w = share * influence(material.influence, length / horizon);
         m += w * length * length * V;
         springs += w * V * (1.0 - std::cos(k.dot(xi))) / (length * length) * xi * xi.transpose();
         h += w * V * std::sin(k.dot(xi)) * xi;
     }
-    const double K = dilatational_modulus<Dim>(material), G = material.shear_modulus, n = Dim;
+    const double G = material.shear_modulus;
+    if (material.model == ForceModel::peridem)
+        return 30.0 * G / m * springs +
+               3.0 * (3.0 * material.bulk_modulus - 5.0 * G) / (m * m) * h * h.transpose();
+    const double K = dilatational_modulus<Dim>(material), n = Dim;
     if (material.model == ForceModel::bond_based) return (Dim == 2 ? 8.0 : 18.0) * K / m * springs;
     const double a = (Dim == 2 ? 8.0 : 15.0) * G;
     return 2.0 * a / m * springs + n * (n * K - a / n) / (m * m) * h * h.transpose();

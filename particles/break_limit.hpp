@@ -1,0 +1,48 @@
+// When a bond breaks: the critical stretch, as given or from a fracture energy.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "particles/material.hpp"
+
+namespace quern {
+
+/// A bond of stretch s = |y|/xi - 1 breaks for good where s > s0; with BreaksIn::both where |s| > s0.
+///
+/// Given as `critical_stretch`, s0 is that of every grain. From a fracture energy Gc [J/m^2] and a horizon d
+/// [m], with the integrals over xi from 0 to d:
+///
+///     energy_balance  space  s0^2 = (4 Gc/(9 K))  int w xi^4 / int w xi^5
+///                     plane  s0^2 = (pi Gc/(4 K2)) int w xi^3 / int w xi^4
+///     peridem                s0^2 = Gc/((3 G + (3/4)^4 (K - 5 G/3)) d)
+///
+///     s0 critical stretch, w influence [-]     K2 resistance to a change of area, 9 K/4 with the constants
+///     K, G moduli [Pa]                         of space in the plane (lps.hpp)
+///
+/// energy_balance: the energy of all bonds across a plane, each stretched to s0, is Gc; exact at the Poisson
+/// ratio of springs, where the LPS has no energy of dilatation. d is that of the grain, s times that of its
+/// shape, so that s0 falls as s^(-1/2) and grains of every size have Gc.
+///
+/// Sources: Silling & Askari, Comput. Struct. 83 (2005) 1526, eqs 26, 27 (w = 1/r; other w and the plane by
+/// the same integral); Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 10. Differs: the public
+/// PeriDEM code compares |s| with s0 with a relative tolerance of 1e-5; none here.
+struct BreakLimit {
+    double stretch = std::numeric_limits<double>::infinity();  ///< s0 of a grain of scale 1
+    bool by_energy = false;                                    ///< s0 falls as scale^(-1/2)
+    bool in_compression = false;
+
+    bool exists() const { return std::isfinite(stretch); }
+    double stretch_of(double scale) const { return by_energy ? stretch / std::sqrt(scale) : stretch; }
+    /// Longest and shortest |y|/xi of a bond of a grain of this scale.
+    double longest(double scale) const { return 1.0 + stretch_of(scale); }
+    double shortest(double scale) const {
+        return in_compression ? std::max(0.0, 1.0 - stretch_of(scale)) : 0.0;
+    }
+};
+
+template <int Dim>
+BreakLimit make_break_limit(const Material& material, double horizon);
+
+}  // namespace quern
