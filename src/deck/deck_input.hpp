@@ -5,10 +5,12 @@
 
 namespace quern {
 
-/// Two of the four moduli.
+/// Two of the four moduli, one of each pair of the other alternatives.
 struct MaterialInput : Material {
     std::optional<double> bulk, shear, young, poisson;
 };
+
+inline const std::vector<std::string> material_models = {"lps", "bond_based", "peridem"};
 
 /// A regular arrangement: counts along the axes, x fastest.
 struct ArrayInput {

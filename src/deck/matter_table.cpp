@@ -67,29 +67,87 @@ void finish_grain(GrainInput& grain, const Cursor& at, const Context& now) {
     }
 }
 
+/// A number of which another key is the alternative: written where it is the one in use.
+void add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member, const char* unit,
+                     const Range& range, const char* about,
+                     const std::function<bool(const MaterialInput&)>& in_use) {
+    const Key key{.name = name, .unit = unit, .range = range, .about = about};
+    t.add(
+        key,
+        [=](MaterialInput& m, const Cursor& at, const Context& now) {
+            m.*member = read_number(at, now, key);
+        },
+        [=](const MaterialInput& m, int) { return in_use(m) ? number_text(m.*member) : std::string(); });
+}
+
 }  // namespace
 
 Table<MaterialInput> material_table() {
     using T = MaterialInput;
     Table<T> t;
-    t.word("model", &T::model, {"lps", "bond_based"},
-           "Internal force: linear peridynamic solid, or bond-based");
+    t.type_of = [](const T& m) { return material_models[static_cast<std::size_t>(m.model)]; };
+    const Key model{.name = "model",
+                    .form = Form::word,
+                    .words = material_models,
+                    .about =
+                        "Internal force: linear peridynamic solid, bond-based, or lps with the "
+                        "options of PeriDEM for defaults"};
+    t.add(
+        model,
+        [model](T& m, const Cursor& at, const Context& now) {
+            m.model = static_cast<ForceModel>(read_word(at, now, model));
+            if (m.model == ForceModel::peridem) set_peridem_options(m);
+        },
+        [](const T& m, int) { return material_models[static_cast<std::size_t>(m.model)]; });
     t.word("plane", &T::plane, {"strain", "stress"}, "Plane strain or plane stress").in_dimension(2);
     t.number("density", &T::density, "kg/m^3", positive, "Mass per volume").require();
     t.number("bulk_modulus", &T::bulk, "Pa", positive, "K; exactly two of the four moduli");
     t.number("shear_modulus", &T::shear, "Pa", positive, "G");
     t.number("young_modulus", &T::young, "Pa", positive, "E");
     t.number("poisson_ratio", &T::poisson, "", {-1.0, 0.5, true, true, false}, "nu");
-    t.number("horizon_ratio", &T::horizon_ratio, "", at_least(1.5), "Horizon over particle spacing");
+    t.word("constants", &T::constants, {"plane", "three_dimensional"},
+           "Constants of lps in the plane; default of peridem: three_dimensional")
+        .in_dimension(2)
+        .only_for({"lps", "peridem"});
+    const auto by_length = [](const T& m) { return m.horizon > 0.0; };
+    const auto by_energy = [](const T& m) { return m.fracture_energy > 0.0; };
+    add_alternative(t, "horizon_ratio", &T::horizon_ratio, "", at_least(1.5),
+                    "Horizon over particle spacing; or give horizon", std::not_fn(by_length));
+    add_alternative(t, "horizon", &T::horizon, "m", positive,
+                    "Horizon of a grain of scale 1; it scales with the grain", by_length);
+    t.word("horizon_rim", &T::horizon_rim, {"included", "excluded"},
+           "Bonds exactly as long as the horizon; default of peridem: excluded");
     t.word("influence", &T::influence, {"constant", "inverse", "conical", "gaussian"},
            "Weight of a bond: 1, 1/r, 1 - r or exp(-(2 r)^2), r = length / horizon");
     t.word("calibration", &T::calibration, {"none", "discrete"},
            "Constants of the continuum, or of the sums over the actual neighbours");
+    t.word(
+        "volume_correction", &T::volume_correction, {"none", "linear"},
+        "Volumes at the rim of a family: whole, or the share within the horizon; default of peridem: linear");
     t.word("surface_correction", &T::surface_correction, {"none", "volume"},
            "Stiffen bonds near the surface by 2 V0 / (V_i + V_j)");
     t.number("bond_damping", &T::bond_damping, "s", not_negative, "Kelvin-Voigt time of the bonds");
-    t.number("critical_stretch", &T::critical_stretch, "", or_infinite,
-             "Bonds break above it, in tension; .inf: never");
+    add_alternative(t, "critical_stretch", &T::critical_stretch, "", or_infinite,
+                    "Bonds break above it, .inf: never; or give fracture_energy", std::not_fn(by_energy));
+    add_alternative(t, "fracture_energy", &T::fracture_energy, "J/m^2", positive,
+                    "Gc, from which the critical stretch of every grain follows", by_energy);
+    const Key formula{.name = "critical_stretch_formula",
+                      .form = Form::word,
+                      .words = {"energy_balance", "peridem"},
+                      .about =
+                          "With fracture_energy; default: energy_balance of the bonds across a plane; "
+                          "default of peridem: its formula"};
+    t.add(
+        formula,
+        [formula](T& m, const Cursor& at, const Context& now) {
+            m.critical_stretch_formula = static_cast<StretchFormula>(read_word(at, now, formula));
+        },
+        [=](const T& m, int) {
+            return by_energy(m) ? formula.words[static_cast<std::size_t>(m.critical_stretch_formula)]
+                                : std::string();
+        });
+    t.word("breaks_in", &T::breaks_in, {"tension", "both"},
+           "Bonds break when stretched, or when compressed as well; default of peridem: both");
     t.finish = finish_material;
     return t;
 }

@@ -47,11 +47,24 @@ void check_bond_based(const MaterialInput& m, const Cursor& at, const Context& n
                      fmt::format("nu = {} {}", stress ? "1/3" : "1/4", state), "model: lps takes any nu");
 }
 
+/// Two keys of which at most one may be given.
+void check_alternative(const Cursor& at, const std::string& first, const std::string& second) {
+    if (!at.has(first) || !at.has(second)) return;
+    throw InputError(at.where(second), fmt::format("{} beside {}", second, first),
+                     fmt::format("only one of {} and {}", first, second));
+}
+
 }  // namespace
 
 void finish_material(MaterialInput& material, const Cursor& at, const Context& now) {
     complete_moduli(material, at);
     if (material.model == ForceModel::bond_based) check_bond_based(material, at, now);
+    check_alternative(at, "horizon_ratio", "horizon");
+    check_alternative(at, "critical_stretch", "fracture_energy");
+    if (at.has("critical_stretch_formula") && !at.has("fracture_energy")) {
+        throw InputError(at.where("critical_stretch_formula"),
+                         "critical_stretch_formula without fracture_energy", "fracture_energy beside it");
+    }
 }
 
 void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now) {

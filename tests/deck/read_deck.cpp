@@ -116,6 +116,48 @@ TEST_CASE("read_deck: what is left out takes the default of the struct") {
     CHECK(deck.grains[1].place.text().find("deck.yaml:32: grains.1") != std::string::npos);
 }
 
+TEST_CASE("read_deck: model peridem is lps with other defaults, each of which can be set back") {
+    const auto material = [](const std::string& keys) {
+        const Deck deck = read_text(replaced(plain_deck, "    density:", keys + "    density:"));
+        const TempFolder folder;
+        const Deck again = read_deck(folder.write("resolved.yaml", resolved_yaml(deck)), {});
+        CHECK(resolved_yaml(again) == resolved_yaml(deck));
+        return deck.materials[0];
+    };
+    const Material plain =
+        material("    model: peridem\n    horizon: 0.6 mm\n    fracture_energy: 50 J/m^2\n");
+    CHECK(plain.model == ForceModel::peridem);
+    CHECK(plain.constants == Constants::three_dimensional);
+    CHECK(plain.volume_correction == VolumeCorrection::linear);
+    CHECK(plain.horizon_rim == HorizonRim::excluded);
+    CHECK(plain.breaks_in == BreaksIn::both);
+    CHECK(plain.influence == Influence::conical);
+    CHECK(plain.calibration == Calibration::discrete);
+    CHECK(plain.critical_stretch_formula == StretchFormula::peridem);
+    CHECK(plain.horizon == 0.6e-3);
+    CHECK(plain.horizon_of(1.0) == 0.6e-3);
+    CHECK(plain.fracture_energy == 50.0);
+    CHECK(plain.can_break());
+
+    const Material back = material(
+        "    model: peridem\n    constants: plane\n    volume_correction: none\n    horizon_rim: included\n"
+        "    breaks_in: tension\n    fracture_energy: 50\n    critical_stretch_formula: energy_balance\n");
+    CHECK(back.constants == Constants::plane);
+    CHECK(back.volume_correction == VolumeCorrection::none);
+    CHECK(back.horizon_rim == HorizonRim::included);
+    CHECK(back.breaks_in == BreaksIn::tension);
+    CHECK(back.critical_stretch_formula == StretchFormula::energy_balance);
+    CHECK(back.horizon_of(0.1) == doctest::Approx(0.3015));
+
+    const Material lps =
+        material("    constants: three_dimensional\n    critical_stretch: 0.1\n    breaks_in: both\n");
+    CHECK(lps.model == ForceModel::lps);
+    CHECK(lps.constants == Constants::three_dimensional);
+    CHECK(lps.critical_stretch == 0.1);
+    CHECK(lps.breaks_in == BreaksIn::both);
+    CHECK(lps.volume_correction == VolumeCorrection::none);
+}
+
 TEST_CASE("read_deck: any two moduli give the same material") {
     const double K = 40e9, G = 24e9, E = 9 * K * G / (3 * K + G), nu = (3 * K - 2 * G) / (6 * K + 2 * G);
     const std::pair<const char*, double> moduli[] = {
