@@ -151,7 +151,8 @@ int parse_and_run(int argc, char** argv) {
         ->type_name("FILE");
     render_command
         .add_option("--field", arguments.render.field,
-                    "speed, velocity_x, damage, grain, von_mises, pressure, stress_xx, principal_difference, "
+                    "speed, velocity_x, damage, damage_z, grain, von_mises, pressure, stress_xx, "
+                    "principal_difference, "
                     "displacement...")
         ->type_name("NAME")
         ->capture_default_str();

@@ -83,6 +83,7 @@ std::vector<Field> all_fields(int dimension) {
             fields.push_back({fmt::format("velocity_{}", axis), "m/s", fmt::format("velocity {}", axis),
                               ColorScale::diverging});
     fields.push_back({"damage", "", "damage"});
+    fields.push_back({"damage_z", "", "largest stretch over critical"});
     fields.push_back({"grain", "", "grain", ColorScale::categorical});
     fields.push_back({"von_mises", "Pa", "von Mises stress"});
     fields.push_back({"pressure", "Pa", "pressure", ColorScale::diverging});
@@ -131,6 +132,10 @@ std::vector<double> make_field_values(const Field& field, const Frame& frame, co
         fill([&](std::size_t i) { return frame.velocity[i * d + axis]; });
     } else if (name == "damage") {
         values.assign(frame.damage.begin(), frame.damage.end());
+    } else if (name == "damage_z") {
+        if (frame.damage_z.size() != n)
+            throw InputError("field", "'damage_z'", "another field", "no material of this run can break");
+        values.assign(frame.damage_z.begin(), frame.damage_z.end());
     } else if (name == "grain") {
         fill([&](std::size_t i) { return frame.grain[i]; });
     } else if (name == "von_mises") {

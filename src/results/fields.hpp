@@ -4,6 +4,7 @@
 //   velocity_x, _y, _z     components of v                                           [m/s]
 //   displacement           |x - x(first frame)|                                      [m]
 //   damage                 fraction of broken bonds                                  [1]
+//   damage_z               largest bond stretch over the critical one                [1]
 //   grain                  number of the grain                                       [1]
 //   von_mises              sqrt(3/2 s:s), s the deviator of the full 3D stress       [Pa]
 //   pressure               -(xx + yy + zz) / 3, compression positive                 [Pa]
@@ -36,7 +37,8 @@ std::vector<std::string> field_names(int dimension);
 /// Throws InputError naming the nearest and all valid names.
 Field find_field(const std::string& name, int dimension);
 
-/// One value a particle [n]. `first` is the first frame of the run.
+/// One value a particle [n]. `first` is the first frame of the run. Throws InputError for a field that the
+/// frames of this run lack.
 std::vector<double> make_field_values(const Field& field, const Frame& frame, const Frame& first);
 
 }  // namespace quern

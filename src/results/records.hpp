@@ -17,6 +17,7 @@ struct Frame {
     std::vector<double> position;  ///< [n * dimension] [m]
     std::vector<float> velocity;   ///< [n * dimension] [m/s]
     std::vector<float> damage;     ///< [n] fraction of broken bonds
+    std::vector<float> damage_z;   ///< [n] stretch of the worst bond over the critical; empty: none can break
     std::vector<float>
         stress;  ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
     std::vector<std::int32_t> grain;  ///< [n]

@@ -36,6 +36,12 @@ std::vector<std::size_t> choose_frames(const std::string& choice, std::size_t n_
     return {number};
 }
 
+/// Largest value of the colours; that of `damage_z` is such that broken bonds are in the upper half.
+double top_of_colors(const Field& field, double largest) {
+    if (field.name == "damage_z") return 2.0;
+    return largest > 0.0 && field.name != "damage" ? largest : 1.0;
+}
+
 /// Range of colours and region shown, grown frame by frame.
 class Extent {
   public:
@@ -123,7 +129,7 @@ std::vector<std::string> render(const RenderOptions& options) {
                            .region = extent.region(run.domain()),
                            .domain = run.domain(),
                            .dimension = run.dimension()};
-    picture.high = extent.largest() > 0.0 && field.name != "damage" ? extent.largest() : 1.0;
+    picture.high = top_of_colors(field, extent.largest());
     picture.low = field.scale == ColorScale::diverging ? -picture.high : 0.0;
 
     std::vector<std::string> files;

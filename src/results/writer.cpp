@@ -185,7 +185,7 @@ void ResultWriter::Files::write(const Packet& packet) {
     for (const GrainRow& row : packet.grains) write(row);
     if (!packet.has_frame) return;
     frames.add(packet.frame);
-    xdmf.add(packet.frame.time, packet.frame.n());
+    xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty());
     if (vtp) vtp->add(packet.frame);
     history.flush();
     grains.flush();

@@ -191,6 +191,9 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
     frame.position.resize(n * d);
     frame.velocity.resize(n * d);
     frame.damage.resize(n);
+    const bool breakable = std::any_of(scene.groups.begin(), scene.groups.end(),
+                                       [](const auto& group) { return group.breakable; });
+    frame.damage_z.resize(breakable ? n : 0);
     frame.stress.resize(n * n_components);
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;
@@ -210,6 +213,12 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
                         if (!view.alive.empty()) model.compute_damage(view, {wide.data(), count});
                         std::transform(wide.begin(), wide.begin() + grain.count,
                                        frame.damage.begin() + grain.first, narrow);
+                        if (breakable) {
+                            std::fill_n(wide.begin(), count, 0.0);
+                            if (group.breakable) model.compute_relative_stretch(view, {wide.data(), count});
+                            std::transform(wide.begin(), wide.begin() + grain.count,
+                                           frame.damage_z.begin() + grain.first, narrow);
+                        }
                         model.compute_stress(view, wide);
                         std::transform(wide.begin(), wide.end(), frame.stress.data() + n_components * first,
                                        narrow);

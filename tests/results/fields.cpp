@@ -46,6 +46,14 @@ TEST_CASE("Fields: motion") {
     CHECK(value("grain", plane) == 5.0);
 }
 
+TEST_CASE("Fields: the stretch over the critical one, where there is one") {
+    Frame frame = make_frame({0, 0, 0, 0});
+    CHECK_THROWS_WITH_AS(value("damage_z", frame), doctest::Contains("no material of this run can break"),
+                         InputError);
+    frame.damage_z = {1.5};
+    CHECK(value("damage_z", frame) == 1.5);
+}
+
 TEST_CASE("Fields: von Mises stress of tension, shear and pressure") {
     const auto near = [](double expected) { return doctest::Approx(expected).epsilon(1e-14); };
     CHECK(value("von_mises", make_frame({7, 0, 0, 0})) == near(7.0));

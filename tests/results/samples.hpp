@@ -41,7 +41,7 @@ inline std::string read_text(const std::string& path) {
 }
 
 /// Two square (cubic) grains of 10^dimension particles each, the second moving to the right; every number of
-/// every array differs from its neighbours.
+/// every array differs from its neighbours. In space they can break.
 inline Frame make_sample_frame(int dimension, int number) {
     constexpr int n_side = 10;
     constexpr double dx = 0.01;
@@ -59,6 +59,7 @@ inline Frame make_sample_frame(int dimension, int number) {
             frame.velocity.push_back(static_cast<float>((c == 0 ? 1.0 : 0.1) * grain + 1e-3 * p));
         }
         frame.damage.push_back(static_cast<float>(p % 7) / 7.0F);
+        if (dimension == 3) frame.damage_z.push_back(static_cast<float>(p % 11) / 5.0F);
         for (int c = 0; c < (dimension == 2 ? 4 : 6); ++c)
             frame.stress.push_back(static_cast<float>(1e4 * (p - n_grain) + 10.0 * c + number));
         frame.grain.push_back(grain);

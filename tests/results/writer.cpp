@@ -70,6 +70,8 @@ TEST_CASE("FrameFileWriter: frames are read back bit by bit") {
             CHECK(read.position == wrote.position);
             CHECK(read.velocity == wrote.velocity);
             CHECK(read.damage == wrote.damage);
+            CHECK(read.damage_z == wrote.damage_z);
+            CHECK(read.damage_z.empty() == (dimension == 2));
             CHECK(read.stress == wrote.stress);
             CHECK(read.grain == wrote.grain);
             CHECK(read.volume == wrote.volume);
@@ -164,6 +166,9 @@ TEST_CASE("FrameFileWriter: frames that do not fit are refused") {
     frame.damage.pop_back();
     CHECK_THROWS_AS(writer.add(frame), std::invalid_argument);
     CHECK_THROWS_AS(writer.add(make_sample_frame(3, 1)), std::invalid_argument);
+    frame = make_sample_frame(2, 1);
+    frame.damage_z.assign(frame.n(), 0.5F);
+    CHECK_THROWS_AS(writer.add(frame), std::invalid_argument);
     writer.add(make_sample_frame(2, 1));
     writer.close();
     CHECK(FrameFileReader(scratch.path("results.h5")).n_frames() == 2);
