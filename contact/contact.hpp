@@ -2,6 +2,7 @@
 // nothing.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -32,6 +33,9 @@ class FrictionTable {
     void set(int a, int b, double value) {
         mu_[static_cast<std::size_t>(a * n_ + b)] = mu_[static_cast<std::size_t>(b * n_ + a)] = value;
     }
+    bool any() const {
+        return std::any_of(mu_.begin(), mu_.end(), [](double mu) { return mu > 0.0; });
+    }
 
   private:
     int n_;
@@ -61,6 +65,7 @@ struct ContactTrial {
     std::span<Vec<Dim>> drift;  ///< [n] velocity that positions move with; read only if `moves_with_grid`
     /// No particle and no wall is faster, with this step's forces [m/s]. Infinite: not known.
     double largest_speed = std::numeric_limits<double>::infinity();
+    bool first = false;  ///< first kick of the clock: half as long, and nothing has moved before it
 };
 
 /// Energies are work done on the particles in this step, impulse times the mean of the velocities before
@@ -68,12 +73,16 @@ struct ContactTrial {
 /// J/m].
 template <int Dim>
 struct ContactReport {
-    double normal_work = 0.0;             ///< relative motion along the normals (loss: negative)
-    double friction_work = 0.0;           ///< relative motion along the surfaces (loss: negative)
-    double wall_work = 0.0;               ///< done by moving walls
-    std::vector<Vec<Dim>> grain_impulse;  ///< [n_grains] received [N s; 2D: N s/m]
-    std::vector<Vec<Dim>> wall_impulse;   ///< [n_walls] received
-    std::vector<Spin<Dim>> wall_moment;   ///< [n_walls] moment of the wall impulses about the origin
+    double normal_work = 0.0;    ///< relative motion along the normals (loss: negative)
+    double friction_work = 0.0;  ///< relative motion along the surfaces (loss: negative)
+    double wall_work = 0.0;      ///< done by moving walls
+    double elastic = 0.0;        ///< stored in springs at the positions given
+    double elastic_work = 0.0;   ///< of the springs, against walls at rest, taken with `v_before`
+    double slip_loss = 0.0;      ///< lost by tangential springs that slipped on the way to `x`
+    double stable_step = std::numeric_limits<double>::infinity();  ///< with the springs found by a search [s]
+    std::vector<Vec<Dim>> grain_impulse;                           ///< [n_grains] received [N s; 2D: N s/m]
+    std::vector<Vec<Dim>> wall_impulse;                            ///< [n_walls] received
+    std::vector<Spin<Dim>> wall_moment;  ///< [n_walls] moment of the wall impulses about the origin
     std::int64_t n_nodes = 0, n_contacts = 0;
     int sweeps = 0;
     bool searched = true;  ///< contact nodes were found anew

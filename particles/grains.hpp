@@ -20,6 +20,7 @@ struct Grain {
     double mass = 0.0;    ///< [kg; 2D: kg/m]
     double volume = 0.0;  ///< [m^3; 2D: m^2]
     int id = 0;           ///< number in the deck
+    bool wall = false;    ///< stands for a wall: no contact between two of them (node pairs)
 };
 
 /// State of all particles, grain after grain.

@@ -53,13 +53,17 @@ struct GrainDeck {
     Numbers3 position{};
     Numbers3 angle{};  ///< rotation vector [rad]; 2D: component 2 (about z)
     Numbers3 velocity{};
-    Numbers3 spin{};  ///< [rad/s]; 2D: component 2
+    Numbers3 spin{};    ///< [rad/s]; 2D: component 2
+    bool wall = false;  ///< stands for a wall: node pairs see no contact between two of them
     Place place;
 };
 
-struct FrictionPair {
-    std::string first, second;  ///< materials
-    double value = 0.0;
+/// What holds between two materials in the place of what `contact` says for all.
+struct ContactPair {
+    std::string first, second;                                     ///< materials
+    std::optional<double> friction;                                ///< with either method
+    std::optional<double> stiffness, restitution, damping_factor;  ///< node pairs, as in NodePairDeck
+    std::optional<double> contact_radius, radius_factor;
 };
 
 /// A rigid plane. Matter stays on the side that `normal` points to.
@@ -82,13 +86,40 @@ struct GridDeck {
 
 enum class ContactRule { none, pair, seed };
 enum class ContactCoupling { impulse, flip };
+enum class ContactMethodKind { grid, node_pair };
 
-/// Contact on the grid. Each switch turns one ingredient of the pair rule off, to show what it does.
+enum class NodePairStiffness { consistent, published };
+enum class NodePairRadius { surface, published };
+enum class NodePairDamping { none, nodes };
+enum class NodePairFriction { history, slip, published };
+enum class NodePairParticles { surface, all };
+
+/// Contact between nodes; equations in contact/node_pair_law.hpp and node_pair_contact.hpp.
+struct NodePairDeck {
+    std::optional<double> stiffness;  ///< K [N/m^7; 2D: N/m^6]; none: by the rule
+    NodePairStiffness stiffness_rule = NodePairStiffness::consistent;
+    NodePairRadius radius = NodePairRadius::surface;
+    double radius_factor = 0.95;           ///< over the smallest distance of two nodes
+    std::optional<double> contact_radius;  ///< R [m]; none: by the rule
+    NodePairDamping damping = NodePairDamping::none;
+    double restitution = 0.9;  ///< of two nodes
+    NodePairFriction friction_law = NodePairFriction::history;
+    double tangential_ratio = 0.8;    ///< tangential over normal stiffness
+    double tangential_damping = 0.0;  ///< part of the critical one
+    NodePairParticles particles = NodePairParticles::surface;
+    bool self_contact = true;
+    double skin = 0.3;  ///< [largest R]
+};
+
+/// Contact. All but method, friction, pairs and `rule: none` belong to the grid. Each switch turns one
+/// ingredient of the pair rule off, to show what it does.
 struct ContactDeck {
+    ContactMethodKind method = ContactMethodKind::grid;
     ContactRule rule = ContactRule::pair;
     ContactCoupling coupling = ContactCoupling::impulse;
     double friction = 0.0;  ///< between grains, where no pair of materials says otherwise
-    std::vector<FrictionPair> pairs;
+    std::vector<ContactPair> pairs;
+    NodePairDeck node_pair;
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n

@@ -127,8 +127,19 @@ Table<WallInput> wall_table() {
     return t;
 }
 
-Table<FrictionPair> pair_table() {
-    using T = FrictionPair;
+const Key stiffness_key{.name = "stiffness",
+                        .form = Form::number,
+                        .unit = "N/m^7",
+                        .range = positive,
+                        .about = "Node pairs: force over overlap and both volumes (2D: N/m^6)"};
+
+double read_stiffness(const Cursor& at, const Context& now, Key key) {
+    if (now.dimension == 2) key.unit = "N/m^6";
+    return read_number(at, now, key);
+}
+
+Table<ContactPair> pair_table() {
+    using T = ContactPair;
     Table<T> t;
     const Key between{.name = "between", .form = Form::names, .about = "Two materials, or one of them twice"};
     t.add(
@@ -142,18 +153,87 @@ Table<FrictionPair> pair_table() {
          },
          [](const T& pair, int) { return fmt::format("[{}, {}]", quoted(pair.first), quoted(pair.second)); })
         .require();
-    t.number("friction", &T::value, "", not_negative, "Coulomb coefficient between them").require();
+    t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient between them");
+    t.add(
+        stiffness_key,
+        [](T& pair, const Cursor& at, const Context& now) {
+            pair.stiffness = read_stiffness(at, now, stiffness_key);
+        },
+        [](const T& pair, int) { return pair.stiffness ? number_text(*pair.stiffness) : std::string(); });
+    t.number("restitution", &T::restitution, "", fraction, "Node pairs: as contact.node_pair.restitution");
+    t.number("contact_radius", &T::contact_radius, "m", positive,
+             "Node pairs: distance at which two nodes touch");
+    t.number("radius_factor", &T::radius_factor, "", positive,
+             "Node pairs: the same over the smallest distance of two nodes of a grain");
+    t.finish = [](T& pair, const Cursor& at, const Context&) {
+        if (pair.contact_radius && pair.radius_factor)
+            throw InputError(at.where(), "contact_radius and radius_factor", "one of them");
+        if (pair.friction || pair.stiffness || pair.restitution || pair.contact_radius || pair.radius_factor)
+            return;
+        throw InputError(at.where(), "nothing for the pair", "friction, or another key beside between");
+    };
+    return t;
+}
+
+Table<NodePairDeck> node_pair_table() {
+    using T = NodePairDeck;
+    Table<T> t;
+    Key stiffness = stiffness_key;
+    stiffness.words = {"consistent", "published"};
+    stiffness.about =
+        "Force over overlap and both volumes (2D: N/m^6); from the moduli: of the right dimension, or as "
+        "published, "
+        "18 K/(pi horizon^5) in 2D, too";
+    t.add(
+        stiffness,
+        [stiffness](T& deck, const Cursor& at, const Context& now) {
+            deck.stiffness.reset();
+            for (std::size_t i = 0; i < stiffness.words.size(); ++i)
+                if (says(at, now, stiffness.words[i])) {
+                    deck.stiffness_rule = static_cast<NodePairStiffness>(i);
+                    return;
+                }
+            deck.stiffness = read_stiffness(at, now, stiffness);
+        },
+        [stiffness](const T& deck, int) {
+            return deck.stiffness ? number_text(*deck.stiffness)
+                                  : stiffness.words[static_cast<std::size_t>(deck.stiffness_rule)];
+        });
+    t.word(
+        "radius", &T::radius, {"surface", "published"},
+        "Distance at which two nodes touch: that of the true surfaces, or radius_factor times the smallest "
+        "distance of two nodes of a grain in the run");
+    t.number("radius_factor", &T::radius_factor, "", positive,
+             "As above; surface: of the spacing, for nodes on the surface itself");
+    t.number("contact_radius", &T::contact_radius, "m", positive,
+             "Distance at which two nodes touch, as a number");
+    t.word("damping", &T::damping, {"none", "nodes"}, "Dashpots: none, or one a pair of nodes");
+    t.number("restitution", &T::restitution, "", fraction, "Of two nodes with a dashpot");
+    t.word("friction_law", &T::friction_law, {"history", "slip", "published"},
+           "Tangential springs that stick; friction against the slip; with the sign of the published model");
+    t.number("tangential_ratio", &T::tangential_ratio, "", {0.0, 1.0, true, false, false},
+             "Tangential stiffness over normal stiffness (history)");
+    t.number("tangential_damping", &T::tangential_damping, "", not_negative,
+             "Dashpot of a tangential spring over the critical one (history)");
+    t.word("particles", &T::particles, {"surface", "all"}, "Nodes that take part: two layers, or all");
+    t.flag("self_contact", &T::self_contact, "Nodes on two sides of a crack repel");
+    t.number("skin", &T::skin, "", {0.0, 10.0, false, false, false},
+             "Pairs are searched anew when a node has moved by half of this part of the largest radius; 0: "
+             "every step");
     return t;
 }
 
 Table<ContactDeck> contact_table() {
     using T = ContactDeck;
     Table<T> t;
+    t.word("method", &T::method, {"grid", "node_pair"},
+           "On the grid, or between nodes; all keys but rule: none, friction, pairs and node_pair belong to "
+           "the grid");
     t.word("rule", &T::rule, {"none", "pair", "seed"},
            "No contact, pairs of grains on a node, or the seed rule");
     t.word("coupling", &T::coupling, {"impulse", "flip"}, "How nodal changes reach the particles");
     t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient between grains");
-    t.list("pairs", &T::pairs, pair_table(), "Friction between particular materials");
+    t.list("pairs", &T::pairs, pair_table(), "What holds between particular materials");
     t.number("interior_weight", &T::interior_weight, "", fraction,
              "Weight of interior particles in an impulse");
     t.integer("max_sweeps", &T::max_sweeps, {1, 10000, false, false, false},
@@ -167,6 +247,7 @@ Table<ContactDeck> contact_table() {
     t.flag("rotation", &T::rotation, "Impulses act at one point and turn what they meet");
     t.flag("gap_test", &T::gap_test, "Grains may approach as far as there is a gap");
     t.flag("exact_mass", &T::exact_mass, "Exact inverse mass of the impulse map; false: nodal mass");
+    t.section("node_pair", &T::node_pair, node_pair_table(), "Contact between nodes (method: node_pair)");
     t.finish = [](T& contact, const Cursor& at, const Context&) { contact.place = at.place(); };
     return t;
 }

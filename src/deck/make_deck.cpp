@@ -88,12 +88,12 @@ void check_grain(const GrainDeck& grain, const Deck& deck, std::size_t number) {
 void check_pairs(const Deck& deck, const Cursor& at) {
     const std::vector<std::string> materials = names_of(deck.materials);
     for (std::size_t i = 0; i < deck.contact.pairs.size(); ++i) {
-        const FrictionPair& pair = deck.contact.pairs[i];
+        const ContactPair& pair = deck.contact.pairs[i];
         const auto where = [&] { return at.where(fmt::format("contact.pairs.{}.between", i)); };
         check_name(pair.first, materials, "material", where);
         check_name(pair.second, materials, "material", where);
         for (std::size_t j = 0; j < i; ++j) {
-            const FrictionPair& other = deck.contact.pairs[j];
+            const ContactPair& other = deck.contact.pairs[j];
             const bool same = (pair.first == other.first && pair.second == other.second) ||
                               (pair.first == other.second && pair.second == other.first);
             if (same) throw InputError(where(), "a pair of materials a second time", "each pair once");

@@ -218,6 +218,7 @@ Table<GrainInput> grain_table() {
     t.turn("angle", &T::angle, "rad", "Rotation about z; rotation vector in 3D");
     t.vector("velocity", &T::velocity, "m/s", any_number, "Initial velocity");
     t.turn("spin", &T::spin, "rad/s", "Initial angular velocity");
+    t.flag("wall", &T::wall, "It stands for a wall: node pairs see no contact between two of them");
     const Key file{
         .name = "file", .form = Form::text, .about = "CSV with a grain a row, relative to the deck"};
     t.add(

@@ -54,6 +54,7 @@ std::string make_energy(const EnergyBudget& energy, double residual_relative) {
     Block block('{', '}', 1);
     block.add("kinetic", json_number(energy.kinetic));
     block.add("elastic", json_number(energy.elastic));
+    block.add("contact_elastic", json_number(energy.contact_elastic));
     block.add("gravity", json_number(energy.gravity));
     block.add("damping", json_number(energy.damping));
     block.add("friction", json_number(energy.friction));

@@ -26,10 +26,11 @@ struct Frame {
 };
 
 /// Energy budget at one time [J; 2D: J/m]. Works are counted from the start of the clock.
-/// kinetic + elastic + gravity + damping + friction + contact_loss + fracture + transfer_loss - external_work
+/// kinetic + elastic + contact_elastic + gravity + damping + friction + contact_loss + fracture +
+/// transfer_loss - external_work
 /// - (its value at the start) = residual.
 struct EnergyBudget {
-    double kinetic = 0, elastic = 0, gravity = 0;                                         ///< stored
+    double kinetic = 0, elastic = 0, contact_elastic = 0, gravity = 0;                    ///< stored
     double damping = 0, friction = 0, contact_loss = 0, fracture = 0, transfer_loss = 0;  ///< dissipated
     double external_work = 0;  ///< by loads, constraints and moving walls
     double residual = 0;       ///< what is missing

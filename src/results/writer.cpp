@@ -18,9 +18,8 @@ namespace {
 
 std::string make_history_header(int dimension) {
     return std::string(
-               "time,kinetic,elastic,gravity,damping,friction,contact_loss,fracture,transfer_loss,external_"
-               "work,"
-               "residual,throughput,") +
+               "time,kinetic,elastic,contact_elastic,gravity,damping,friction,contact_loss,fracture,"
+               "transfer_loss,external_work,residual,throughput,") +
            (dimension == 2 ? "momentum_x,momentum_y,angular_momentum\n"
                            : "momentum_x,momentum_y,momentum_z,"
                              "angular_momentum_x,angular_momentum_y,angular_momentum_z\n");
@@ -193,9 +192,9 @@ void ResultWriter::Files::write(const Packet& packet) {
 
 void ResultWriter::Files::write(const HistoryRow& row) {
     const EnergyBudget& e = row.energy;
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
-                                   e.gravity, e.damping, e.friction, e.contact_loss, e.fracture,
-                                   e.transfer_loss, e.external_work, e.residual, e.throughput);
+    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
+                                   e.contact_elastic, e.gravity, e.damping, e.friction, e.contact_loss,
+                                   e.fracture, e.transfer_loss, e.external_work, e.residual, e.throughput);
     line += cells(row.momentum, dimension);
     line += dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
     history.write(line + "\n");

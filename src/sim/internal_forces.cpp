@@ -56,13 +56,16 @@ class TaskForces {
     }
 
     double energy_of(int g, const GrainView<Dim>& view) const {
-        const bool with_grid = scene_.contact && scene_.contact->moves_with_grid();
-        const std::vector<Vec<Dim>>& v = with_grid ? scene_.arrays.drift : scene_.particles.v;
+        const std::vector<Vec<Dim>>& v = scene_.moves_with_grid() ? scene_.arrays.drift : scene_.particles.v;
         return std::visit(
             [&](const auto& model) {
                 return energy_now<Dim>(model, view, v.data() + scene_.grains[g].first, elapsed_);
             },
             scene_.group_of(g).model);
+    }
+
+    void mark_torn(int g) const {
+        if (!scene_.torn.empty()) scene_.torn[static_cast<std::size_t>(g)] = 1;
     }
 
     /// Energy that the bonds of a grain set free between the bytes `intact` and now.
@@ -80,7 +83,10 @@ class TaskForces {
             thread_local std::vector<std::uint8_t> intact;
             intact.assign(view.alive.bytes().begin(), view.alive.bytes().end());
             broken.count = model.break_bonds(view, scene_.alive_of(g));
-            if (broken.count > 0) broken.released = released(g, view, intact);
+            if (broken.count > 0) {
+                broken.released = released(g, view, intact);
+                mark_torn(g);
+            }
         }
         model.add_internal_forces(view, zeroed(scene_.arrays.internal, g));
         if (group.damped) model.add_damping_forces(view, zeroed(scene_.arrays.damping, g));
@@ -128,8 +134,10 @@ class TaskForces {
             broken.count += __builtin_popcount(torn.lanes[k]);
         }
         for (int lane = 0; lane < batch.size; ++lane)
-            if ((lanes >> lane & 1U) != 0)
+            if ((lanes >> lane & 1U) != 0) {
                 broken.released += released(task.grain[lane], batch.grain[lane], intact);
+                mark_torn(task.grain[lane]);
+            }
         return broken;
     }
 

@@ -83,6 +83,7 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
     const double contact = here.normal + here.friction + here.wall;
     e.kinetic = now.ledger.kinetic + part * (contact + here.constraint - here.transfer);
     e.elastic = scene.elastic_energy();
+    e.contact_elastic = now.ledger.contact_elastic;
     e.gravity = m.potential;
     e.damping = 0.0 - past.damping - (now.first ? 0.0 : now.ledger.damping_half);
     e.friction = 0.0 - past.friction - part * here.friction;
@@ -91,13 +92,13 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
     e.transfer_loss = past.transfer + part * here.transfer;
     e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint +
                       part * here.constraint + past.wall + part * here.wall;
-    const double stored = e.kinetic + e.elastic + e.gravity;
+    const double stored = e.kinetic + e.elastic + e.contact_elastic + e.gravity;
     const double lost = e.damping + e.friction + e.contact_loss + e.fracture + e.transfer_loss;
     const double total = stored + lost - e.external_work;
     if (!started_) start_energy_ = total;
     started_ = true;
     e.residual = total - start_energy_;
-    throughput_ = std::max(throughput_, e.kinetic + e.elastic + std::abs(lost));
+    throughput_ = std::max(throughput_, e.kinetic + e.elastic + e.contact_elastic + std::abs(lost));
     e.throughput = throughput_;
     largest_residual_ = std::max(largest_residual_, std::abs(e.residual));
 

@@ -347,6 +347,12 @@ class Run {
                     "contact sweeps ended at contact.max_sweeps before contact.tolerance (first in step {})",
                     now_.first_unconverged),
                 now_.unconverged);
+        if (now_.unstable > 0)
+            summary_.warnings.emplace_back(fmt::format("time step {:.4g} s is above the stable step {:.4g} s "
+                                                       "of the contacts found (first in step "
+                                                       "{})",
+                                                       now_.dt, now_.least_stable_step, now_.first_unstable),
+                                           now_.unstable);
         for (const auto& [text, count] : warnings_) summary_.warnings.emplace_back(text, count);
         writer_->log(fmt::format("{}: {} steps in {:.2f} s, {:.1f} ns per particle-step, state {}",
                                  summary_.outcome, summary_.steps, summary_.wall_seconds,

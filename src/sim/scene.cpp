@@ -10,6 +10,7 @@
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
 #include "grid/z_order.hpp"
+#include "particles/strain.hpp"
 #include "src/mesh/make_shape.hpp"
 #include "src/sim/force_plan.hpp"
 
@@ -48,6 +49,23 @@ CartesianGrid<Dim> make_grid(const GridDeck& deck) {
 KernelChoice kernel_choice(const ComputeDeck& deck, bool batches) {
     return {deck.kernel == ForceKernel::reference ? Kernel::reference : Kernel::fast, deck.instructions,
             batches};
+}
+
+NodePairOptions node_pair_options(const NodePairDeck& deck) {
+    NodePairOptions options;
+    options.radius = deck.radius == NodePairRadius::published ? PairRadius::published : PairRadius::surface;
+    options.radius_factor = deck.radius_factor;
+    options.damping = deck.damping == NodePairDamping::nodes ? PairDamping::nodes : PairDamping::none;
+    options.friction_law = deck.friction_law == NodePairFriction::history ? PairFriction::history
+                           : deck.friction_law == NodePairFriction::slip  ? PairFriction::slip
+                                                                          : PairFriction::published;
+    options.tangential_ratio = deck.tangential_ratio;
+    options.tangential_damping = deck.tangential_damping;
+    options.particles =
+        deck.particles == NodePairParticles::all ? PairParticles::all : PairParticles::surface;
+    options.self_contact = deck.self_contact;
+    options.skin = deck.skin;
+    return options;
 }
 
 GridContactOptions contact_options(const ContactDeck& deck) {
@@ -116,6 +134,7 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         grain.count = shape.n_nodes();
         grain.material = material_index;
         grain.id = id;
+        grain.wall = from.wall;
         const double volume_scale = std::pow(from.scale, Dim);
         const Mat<Dim> R = rotation_matrix(spin(from.angle, Spin<Dim>{}));
         for (int i = 0; i < shape.n_nodes(); ++i) {
@@ -192,6 +211,63 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
             for (; it != points.end() && it->key <= key + 1; ++it) compare(point, *it);
         }
     }
+}
+
+/// Laws of all pairs of materials: those of node_pair, and what pairs say.
+PairLaws pair_laws(const Deck& deck) {
+    const NodePairDeck& from = deck.contact.node_pair;
+    PairLaw all;
+    all.rule = from.stiffness_rule == NodePairStiffness::published ? PairStiffness::published
+                                                                   : PairStiffness::consistent;
+    if (from.stiffness) all.rule = PairStiffness::given;
+    all.stiffness = from.stiffness.value_or(0.0);
+    all.radius = from.contact_radius.value_or(0.0);
+    all.restitution = from.restitution;
+    PairLaws laws(static_cast<int>(deck.materials.size()), all);
+    for (const ContactPair& pair : deck.contact.pairs) {
+        PairLaw law = all;
+        if (pair.stiffness) {
+            law.rule = PairStiffness::given;
+            law.stiffness = *pair.stiffness;
+        }
+        if (pair.contact_radius) law.radius = *pair.contact_radius;
+        if (pair.radius_factor) {
+            law.radius = 0.0;
+            law.radius_factor = *pair.radius_factor;
+        }
+        if (pair.restitution) law.restitution = *pair.restitution;
+        laws.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second), law);
+    }
+    return laws;
+}
+
+template <int Dim>
+void add_node_pairs(const Deck& deck, Scene<Dim>& scene) {
+    std::vector<PairBody> bodies;
+    for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+        const Material& material = deck.materials[scene.grains[g].material];
+        const double scale = scene.grains[g].scale;
+        PairBody body;
+        body.bulk_modulus = material.bulk_modulus;
+        body.modulus = dilatational_modulus<Dim>(material);
+        body.bond_damping = material.bond_damping;
+        std::visit(
+            [&](const auto& model) {
+                const std::vector<double>& lengths = model.bonds().length;
+                body.horizon = scale * model.horizon();
+                body.least_distance = scale * *std::min_element(lengths.begin(), lengths.end());
+                body.frequency = model.max_frequency() / scale;
+            },
+            scene.group_of(static_cast<int>(g)).model);
+        bodies.push_back(body);
+    }
+    const NodePairOptions options = node_pair_options(deck.contact.node_pair);
+    scene.contact.emplace(std::in_place_type<NodePairContact<Dim>>, scene.grid,
+                          std::span<const Grain<Dim>>(scene.grains), scene.particles.volume,
+                          std::move(bodies), pair_laws(deck), options);
+    const bool breakable = std::any_of(scene.groups.begin(), scene.groups.end(),
+                                       [](const auto& group) { return group.breakable; });
+    if (options.self_contact && breakable) scene.torn.assign(scene.grains.size(), 0);
 }
 
 template <int Dim>
@@ -296,6 +372,12 @@ double Scene<Dim>::elastic_energy() const {
 }
 
 template <int Dim>
+bool Scene<Dim>::moves_with_grid() const {
+    const auto* method = contact ? std::get_if<GridContact<Dim>>(&*contact) : nullptr;
+    return method != nullptr && method->moves_with_grid();
+}
+
+template <int Dim>
 double Scene<Dim>::stable_step() const {
     double least = std::numeric_limits<double>::infinity();
     for (const MaterialGroup<Dim>& group : groups) {
@@ -306,6 +388,8 @@ double Scene<Dim>::stable_step() const {
                                         (std::sqrt(1.0 + zeta * zeta / (grains[g].scale * grains[g].scale)) -
                                          zeta / grains[g].scale));
     }
+    if (const auto* pairs = contact ? std::get_if<NodePairContact<Dim>>(&*contact) : nullptr)
+        least = std::min(least, pairs->stable_step());
     return least;
 }
 
@@ -329,12 +413,16 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
                     [](const auto& group) { return group.damped; }))
         arrays.damping.assign(n, Vec<Dim>::Zero());
     scene->friction = FrictionTable(static_cast<int>(deck.materials.size()), deck.contact.friction);
-    for (const FrictionPair& pair : deck.contact.pairs)
-        scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second),
-                            pair.value);
-    if (deck.contact.rule != ContactRule::none) {
-        scene->contact.emplace(scene->grid, contact_options(deck.contact));
-        if (scene->contact->moves_with_grid()) {
+    for (const ContactPair& pair : deck.contact.pairs)
+        if (pair.friction)
+            scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second),
+                                *pair.friction);
+    if (deck.contact.rule != ContactRule::none && deck.contact.method == ContactMethodKind::node_pair) {
+        add_node_pairs(deck, *scene);
+    } else if (deck.contact.rule != ContactRule::none) {
+        scene->contact.emplace(std::in_place_type<GridContact<Dim>>, scene->grid,
+                               contact_options(deck.contact));
+        if (scene->moves_with_grid()) {
             arrays.drift.assign(n, Vec<Dim>::Zero());
             arrays.drift_before.assign(n, Vec<Dim>::Zero());
         }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "contact/grid_contact.hpp"
+#include "contact/contact_method.hpp"
 #include "particles/grains.hpp"
 #include "particles/peridynamic_model.hpp"
 #include "particles/union_batch.hpp"
@@ -87,7 +87,8 @@ struct Scene {
     std::vector<Wall<Dim>> walls;
     std::vector<std::array<Expression, Dim>> wall_velocity;
     FrictionTable friction;
-    std::optional<GridContact<Dim>> contact;
+    std::optional<ContactMethod<Dim>> contact;
+    std::vector<std::uint8_t> torn;  ///< [n_grains] lost bonds in this step; empty: nobody asks
     double travelled = 0.0;  ///< sum over the steps of the longest way that a particle or a wall has gone [m]
     Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
     double mass_damping = 0.0;            ///< [1/s]
@@ -99,8 +100,9 @@ struct Scene {
     GrainView<Dim> view(int grain) const;
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     const MaterialGroup<Dim>& group_of(int grain) const;
+    bool moves_with_grid() const;   ///< positions move with StepArrays::drift
     double elastic_energy() const;  ///< [J; 2D: J/m]
-    double stable_step() const;     ///< largest stable time step, bond damping included [s]
+    double stable_step() const;     ///< largest stable time step, damping and contact included [s]
 };
 
 /// Builds the scene of a deck. Throws InputError (grain outside the grid, grains overlapping, material or

@@ -51,7 +51,7 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     Particles<Dim>& particles = scene.particles;
     const bool loaded = !scene.loads.empty();
     const bool bond_damped = !a.damping.empty();
-    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const bool with_grid = scene.moves_with_grid();
     struct Sums {
         typename Ledger<Dim>::Entry entry;
         double damping_half = 0, load_half = 0, kinetic = 0, fastest = 0;
@@ -113,6 +113,29 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
         }
 }
 
+/// Tells contact which bonds are gone, of the grains that have lost some, in the order of the grains.
+template <int Dim>
+void hand_over_broken_bonds(Scene<Dim>& scene, const ContactScene<Dim>& view, StepContext<Dim>& now) {
+    for (std::size_t g = 0; g < scene.torn.size(); ++g) {
+        if (!scene.torn[g]) continue;
+        scene.torn[g] = 0;
+        const int grain = static_cast<int>(g);
+        const BondBits alive = scene.view(grain).alive;
+        std::vector<BrokenBond> broken;
+        std::visit(
+            [&](const auto& model) {
+                const Bonds<Dim>& bonds = model.bonds();
+                for (int i = 0; i < bonds.n_nodes(); ++i)
+                    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
+                        if (!alive[b]) broken.push_back({i, bonds.partner[b]});
+            },
+            scene.group_of(grain).model);
+        // What the springs of a new crack begin with comes from what its bonds have set free.
+        now.ledger.past.fracture -=
+            std::get<NodePairContact<Dim>>(*scene.contact).set_broken(view, grain, std::move(broken));
+    }
+}
+
 template <int Dim>
 void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     if (!scene.contact) return;
@@ -121,9 +144,16 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
                                  scene.walls,  &scene.friction, scene.travelled};
     double fastest = now.largest_speed;
     for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
-    const ContactReport<Dim>& report = scene.contact->add_impulses(
-        view, {now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest});
+    hand_over_broken_bonds(scene, view, now);
+    const ContactTrial<Dim> trial{
+        now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first};
+    const ContactReport<Dim>& report = std::visit(
+        [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
+        *scene.contact);
     typename Ledger<Dim>::Entry& entry = now.ledger.now;
+    now.ledger.contact_elastic = report.elastic;
+    now.ledger.kinetic += now.part_done() * report.elastic_work;
+    now.ledger.past.friction -= report.slip_loss;
     entry.normal += report.normal_work;
     entry.friction += report.friction_work;
     entry.wall += report.wall_work;
@@ -139,6 +169,8 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     now.sweeps += report.sweeps;
     now.searches += report.searched ? 1 : 0;
     if (!report.converged && now.unconverged++ == 0) now.first_unconverged = now.step;
+    if (report.stable_step < now.dt && now.unstable++ == 0) now.first_unstable = now.step;
+    now.least_stable_step = std::min(now.least_stable_step, report.stable_step);
 }
 
 /// Works of this step that need the velocities after contact.
@@ -146,7 +178,7 @@ template <int Dim>
 void close_ledger(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     StepArrays<Dim>& a = scene.arrays;
     const Particles<Dim>& particles = scene.particles;
-    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const bool with_grid = scene.moves_with_grid();
     const bool loaded = !scene.loads.empty(), bond_damped = !a.damping.empty();
     typename Ledger<Dim>::Entry& entry = now.ledger.now;
     if (!with_grid && !loaded && !bond_damped && scene.mass_damping == 0.0) return;
@@ -228,7 +260,7 @@ template <int Dim>
 void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
     const StageTimer timer(now.stages.drift);
     Particles<Dim>& particles = scene.particles;
-    const bool with_grid = scene.contact && scene.contact->moves_with_grid();
+    const bool with_grid = scene.moves_with_grid();
     const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : particles.v;
     struct Moved {
         double fastest = 0.0;  ///< squared speed

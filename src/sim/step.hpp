@@ -34,6 +34,7 @@ struct Ledger {
     Entry now;                               ///< the step at hand
     double damping_half = 0, load_half = 0;  ///< half of this step's work, taken with v(n-1/2)
     double kinetic = 0;                      ///< at time n [J]
+    double contact_elastic = 0;              ///< at time n [J]
 };
 
 template <int Dim>
@@ -48,6 +49,9 @@ struct StepContext {
     std::vector<Vec<Dim>> wall_impulse;   ///< [n_walls]
     double largest_speed = 0.0;           ///< of the particles, with this step's forces, before contact [m/s]
     std::int64_t unconverged = 0, first_unconverged = -1;
+    /// Searches whose contact springs ask for a smaller step, and the smallest such step [s].
+    std::int64_t unstable = 0, first_unstable = -1;
+    double least_stable_step = std::numeric_limits<double>::infinity();
     std::int64_t newly_broken = 0;
     /// Share of this step's works that has happened at the time of the positions: the first kick starts
     /// there.

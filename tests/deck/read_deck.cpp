@@ -67,7 +67,7 @@ TEST_CASE("read_deck: every key arrives in SI units") {
     CHECK(deck.contact.friction == 0.15);
     REQUIRE(deck.contact.pairs.size() == 1);
     CHECK(deck.contact.pairs[0].second == "odd name, really");
-    CHECK(deck.contact.pairs[0].value == 0.5);
+    CHECK(deck.contact.pairs[0].friction == 0.5);
     CHECK(deck.contact.interior_weight == 0.1);
     CHECK(deck.contact.max_sweeps == 10);
     CHECK(deck.contact.tolerance == 1e-4);

@@ -188,12 +188,13 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
         writer.finish({});
         const bool plane = dimension == 2;
         CHECK(read_text(scratch.path("run/history.csv")) ==
-              std::string("time,kinetic,elastic,gravity,damping,friction,contact_loss,fracture,transfer_loss,"
+              std::string("time,kinetic,elastic,contact_elastic,gravity,damping,friction,contact_loss,"
+                          "fracture,transfer_loss,"
                           "external_work,residual,throughput,") +
                   (plane ? "momentum_x,momentum_y,angular_momentum\n"
                          : "momentum_x,momentum_y,momentum_z,angular_momentum_x,angular_momentum_y,"
                            "angular_momentum_z\n") +
-                  "0.1,0.3333333333333333,0,0,0,0,0,0,0,0,-1e-300,2," +
+                  "0.1,0.3333333333333333,0,0,0,0,0,0,0,0,0,-1e-300,2," +
                   (plane ? "4,0,5\n" : "4,0,0,0,0,5\n"));
         CHECK(read_text(scratch.path("run/grains.csv")) ==
               (plane ? "time,grain,x,y,vx,vy,angle,omega,fx,fy\n0.2,7,0,1,2,0,8,9,0,0\n"

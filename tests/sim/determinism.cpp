@@ -80,6 +80,7 @@ TEST_CASE("Determinism: thirty grains in the plane, every method") {
     check_threads(packing, {}, 30);
     check_threads(packing, {"contact.coupling=flip"}, 30);
     check_threads(packing, {"contact.rule=seed"}, 30);
+    check_threads(packing, {"contact.method=node_pair", "contact.node_pair={damping: nodes}"}, 30);
 }
 
 TEST_CASE("Determinism: lattice grains of unlike size, which share unions and break") {
@@ -118,6 +119,22 @@ TEST_CASE("Determinism: results do not depend on how long a search for contact n
     };
     check(packing, {"time.end=0.3"});
     for (const std::string seed : {"2", "4"}) check(mixed, {"params.seed=" + seed});
+}
+
+TEST_CASE("Determinism: results do not depend on how long a list of node pairs serves") {
+    for (const std::string law : {"history", "slip"}) {
+        const auto run = [&](const std::string& skin) {
+            return run_text(packing, {"contact.method=node_pair",
+                                      "contact.node_pair={friction_law: " + law + ", skin: " + skin + "}",
+                                      "materials.light.critical_stretch=0.001", "time.end=0.25"})
+                .summary;
+        };
+        const Summary every_step = run("0"), kept = run("0.3");
+        CHECK(kept.state_hash == every_step.state_hash);
+        CHECK(run("1").state_hash == every_step.state_hash);
+        CHECK(kept.contact_per_step[3].second < 0.5 * every_step.contact_per_step[3].second);
+        CHECK(every_step.energy.fracture != 0.0);
+    }
 }
 
 TEST_CASE("Determinism: every kernel and instruction set agrees to round-off, breaking included") {

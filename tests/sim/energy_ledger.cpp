@@ -116,6 +116,42 @@ grains:
   - {shape: disk, material: rubber, position: [2.7, 0.7], velocity: [-2, 0]}
 )yaml",
      1e-4, &EnergyBudget::transfer_loss},
+    // A spring that begins between two steps works over the whole of the step: (omega dt)^2 of a node's
+    // energy.
+    {"node pairs: bouncing", R"yaml(
+time: {end: 0.3, safety: 0.3}
+gravity: [0, -9.8]
+walls: [{side: y-, friction: 0.4, velocity: ["0.2*sin(40*t)", "0.3*cos(30*t)"]}]
+contact: {method: node_pair}
+grains: [{shape: disk, material: rubber, position: [2, 0.55], velocity: [1, -2]}]
+)yaml",
+     4e-4, &EnergyBudget::friction},
+    {"node pairs: dashpots", R"yaml(
+time: {end: 0.2, safety: 0.3}
+walls: [{side: y-, friction: 0.4}]
+gravity: [0, -9.8]
+contact: {method: node_pair, friction: 0.3, node_pair: {damping: nodes, tangential_damping: 0.5}}
+grains:
+  - {shape: disk, material: rubber, position: [1.5, 0.6], velocity: [2, 0]}
+  - {shape: disk, material: rubber, position: [2.6, 0.9], velocity: [-2, 0], scale: 0.8}
+)yaml",
+     6e-4, &EnergyBudget::contact_loss},
+    {"node pairs: slip without springs", R"yaml(
+time: {end: 0.2, safety: 0.3}
+contact: {method: node_pair, friction: 0.3, node_pair: {friction_law: slip}}
+grains:
+  - {shape: disk, material: rubber, position: [1.5, 2], velocity: [2, 0]}
+  - {shape: disk, material: rubber, position: [2.6, 2.3], velocity: [-2, 0], scale: 0.8}
+)yaml",
+     6e-4, &EnergyBudget::friction},
+    {"node pairs: the published friction", R"yaml(
+time: {end: 0.2, safety: 0.3}
+contact: {method: node_pair, friction: 0.1, node_pair: {friction_law: published, stiffness: published}}
+grains:
+  - {shape: disk, material: rubber, position: [1.5, 2], velocity: [2, 0]}
+  - {shape: disk, material: rubber, position: [2.6, 2.3], velocity: [-2, 0], scale: 0.8}
+)yaml",
+     6e-4, &EnergyBudget::friction},
 };
 
 }  // namespace

@@ -1,0 +1,159 @@
+#include "contact/node_pair_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace quern {
+
+namespace {
+
+/// acos(z)/sqrt(1 - z^2), continued beyond 1.
+double approach_time(double z) {
+    if (std::abs(z - 1.0) < 1e-6) return 1.0;
+    return z < 1.0 ? std::acos(z) / std::sqrt(1.0 - z * z) : std::acosh(z) / std::sqrt(z * z - 1.0);
+}
+
+double coefficient(bool in_space) {
+    return (in_space ? 18.0 : 12.0) / std::numbers::pi;
+}
+
+}  // namespace
+
+double approach_damping_ratio(double restitution) {
+    if (restitution >= 1.0) return 0.0;
+    double low = 0.0, high = 1.0;
+    while (std::exp(-high * approach_time(high)) > restitution) high *= 2.0;
+    for (int i = 0; i < 200 && high - low > 1e-15 * high; ++i) {
+        const double z = 0.5 * (low + high);
+        (std::exp(-z * approach_time(z)) > restitution ? low : high) = z;
+    }
+    return 0.5 * (low + high);
+}
+
+template <int Dim>
+NodePairLaw<Dim>::NodePairLaw(std::span<const Grain<Dim>> grains, std::span<const double> volume,
+                              std::vector<PairBody> bodies, const PairLaws& laws,
+                              const NodePairOptions& options)
+    : bodies_(std::move(bodies)), node_radius_(volume.size()), laws_(laws), options_(options) {
+    least_distance_ = std::numeric_limits<double>::infinity();
+    for (std::size_t g = 0; g < grains.size(); ++g) {
+        const Grain<Dim>& grain = grains[g];
+        const double spacing = grain.shape->dx * grain.scale;
+        least_distance_ = std::min(least_distance_, bodies_[g].least_distance);
+        std::fill_n(node_radius_.begin() + grain.first, grain.count, 0.5 * options.radius_factor * spacing);
+        for (const SurfacePoint<Dim>& point : grain.shape->surface) {
+            double& r = node_radius_[grain.first + point.node];
+            r = std::max(r, point.delta * grain.scale);
+        }
+        Side side;
+        side.material = grain.material;
+        side.density = grain.mass / grain.volume;
+        side.mass = grain.mass;
+        side.spacing = spacing;
+        side.size = grain.shape->radius * grain.scale;
+        side.largest_volume =
+            *std::max_element(volume.begin() + grain.first, volume.begin() + grain.first + grain.count);
+        sides_.push_back(side);
+    }
+    if (options.radius == PairRadius::published)
+        std::fill(node_radius_.begin(), node_radius_.end(), 0.5 * options.radius_factor * least_distance_);
+    for (std::size_t g = 0; g < grains.size(); ++g) {
+        const Grain<Dim>& grain = grains[g];
+        Side& side = sides_[g];
+        side.largest_radius = *std::max_element(node_radius_.begin() + grain.first,
+                                                node_radius_.begin() + grain.first + grain.count);
+        const auto found = std::find_if(threats_.begin(), threats_.end(), [&](const Threat& t) {
+            return sides_[t.grain].material == side.material;
+        });
+        Threat& threat = found != threats_.end() ? *found : threats_.emplace_back();
+        if (threat.grain < 0) threat.spacing = side.spacing;
+        threat.grain = static_cast<int>(g);
+        threat.spacing = std::min(threat.spacing, side.spacing);
+        threat.radius = std::max(threat.radius, side.largest_radius);
+        threat.volume = std::max(threat.volume, side.largest_volume);
+        const bool in_space =
+            Dim == 3 || laws_(side.material, side.material).rule == PairStiffness::published;
+        threat.push =
+            std::max(threat.push, side.largest_volume * horizon_power(static_cast<int>(g), in_space));
+    }
+    for (const Side& side : sides_) n_materials_ = std::max(n_materials_, side.material + 1);
+    damping_ratio_.assign(static_cast<std::size_t>(n_materials_ * n_materials_), 0.0);
+    for (const Threat& a : threats_)
+        for (const Threat& b : threats_) {
+            const PairLaw& pair = law(a.grain, b.grain);
+            const int place = sides_[a.grain].material * n_materials_ + sides_[b.grain].material;
+            if (options.damping == PairDamping::nodes)
+                damping_ratio_[static_cast<std::size_t>(place)] = approach_damping_ratio(pair.restitution);
+            double radius = a.radius + b.radius;
+            if (pair.radius_factor > 0.0) radius = pair.radius_factor * least_distance_;
+            if (pair.radius > 0.0) radius = pair.radius;
+            largest_radius_ = std::max(largest_radius_, radius);
+        }
+}
+
+/// e^(-p/2), with K = (12 or 18)/pi k e^-p: p = 5 in space, 4 in the plane.
+template <int Dim>
+double NodePairLaw<Dim>::horizon_power(int grain, bool in_space) const {
+    const double e = bodies_[grain].horizon;
+    return in_space ? 1.0 / (e * e * std::sqrt(e)) : 1.0 / (e * e);
+}
+
+template <int Dim>
+double NodePairLaw<Dim>::published_radius(int a, int b) const {
+    const PairLaw& pair = law(a, b);
+    if (pair.radius > 0.0) return pair.radius;
+    return (pair.radius_factor > 0.0 ? pair.radius_factor : options_.radius_factor) * least_distance_;
+}
+
+template <int Dim>
+double NodePairLaw<Dim>::stiffness(int a, int b) const {
+    const PairLaw& pair = law(a, b);
+    if (pair.rule == PairStiffness::given) return pair.stiffness;
+    const bool published = pair.rule == PairStiffness::published, in_space = Dim == 3 || published;
+    const double k_a = published ? bodies_[a].bulk_modulus : bodies_[a].modulus;
+    const double k_b = published ? bodies_[b].bulk_modulus : bodies_[b].modulus;
+    return coefficient(in_space) * 2.0 * k_a * k_b / (k_a + k_b) *
+           (horizon_power(a, in_space) * horizon_power(b, in_space));
+}
+
+template <int Dim>
+double NodePairLaw<Dim>::stable_step(int grain) const {
+    const Side& side = sides_[grain];
+    double squared = 0.0, damped = 0.0;
+    for (const Threat& other : threats_) {
+        const PairLaw& pair = law(grain, other.grain);
+        const double R = pair.radius > 0.0          ? pair.radius
+                         : pair.radius_factor > 0.0 ? pair.radius_factor * least_distance_
+                                                    : side.largest_radius + other.radius;
+        double n_springs = 0.0;
+        for (double g = 0.75 * R; g < R; g += other.spacing)
+            n_springs += power(std::floor(1.0 + 2.0 * std::sqrt(R * R - g * g) / other.spacing), Dim - 1);
+        double push = stiffness(grain, other.grain);
+        if (pair.rule == PairStiffness::given) {
+            push *= other.volume;
+        } else {
+            const bool in_space = Dim == 3 || pair.rule == PairStiffness::published;
+            push *= other.push / horizon_power(other.grain, in_space);
+        }
+        const double one = push / side.density;  // k_ij/m_i
+        squared = std::max(squared, 2.0 * n_springs * one);
+        const double z = std::max(damping_ratio(grain, other.grain),
+                                  options_.tangential_damping * std::sqrt(tangential_ratio()));
+        damped = std::max(damped, 4.0 * n_springs * z * std::sqrt(one));
+    }
+    return step_with(grain, squared, damped);
+}
+
+template <int Dim>
+double NodePairLaw<Dim>::step_with(int grain, double squared, double damped) const {
+    const PairBody& body = bodies_[grain];
+    const double inside = body.frequency * body.frequency, omega = std::sqrt(inside + squared);
+    const double z = 0.5 * (body.bond_damping * inside + damped) / omega;
+    return 2.0 / omega * (std::sqrt(1.0 + z * z) - z);
+}
+
+template class NodePairLaw<2>;
+template class NodePairLaw<3>;
+
+}  // namespace quern
