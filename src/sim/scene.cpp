@@ -198,6 +198,7 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
             return;
         const int first = std::min(scene.grains[a.grain].id, scene.grains[b.grain].id);
         const int second = std::max(scene.grains[a.grain].id, scene.grains[b.grain].id);
+        if (deck.grains[first].wall && deck.grains[second].wall) return;
         throw InputError(deck.grains[second].place.text(),
                          fmt::format("grain {} overlapping grain {}", second, first),
                          "grains apart or just touching", "move one of them");

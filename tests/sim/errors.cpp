@@ -28,6 +28,16 @@ TEST_CASE("Errors: grains that overlap") {
     CHECK_NOTHROW(run_text(replaced(two_disks, "position: [3, 1]", "position: [2.0, 1]")));
 }
 
+TEST_CASE("Errors: grains that stand for walls may overlap each other, not other grains") {
+    const std::string walls =
+        replaced(replaced(two_disks, "position: [1, 1]", "position: [1, 1], wall: true"), "position: [3, 1]",
+                 "position: [1.9, 1], wall: true");
+    CHECK_NOTHROW(
+        run_text(replaced(walls, "time: {end: 0.05}", "time: {end: 0.001}\ncontact: {rule: none}")));
+    CHECK(contains(message_of<InputError>(replaced(walls, "[1.9, 1], wall: true", "[1.9, 1]")),
+                   "grain 1 overlapping grain 0"));
+}
+
 TEST_CASE("Errors: a grain behind a wall") {
     const std::string message = input_error("position: [3, 1]", "position: [3, 0.3]");
     CHECK(contains(message, "deck.yaml:14: grains.1"));
