@@ -1,4 +1,4 @@
-// The command line: quern run | check | schema | render.
+// The command line: quern run | check | schema | render | import.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -11,6 +11,7 @@
 #include "grid/error.hpp"
 #include "quern_version.hpp"
 #include "src/deck/read_deck.hpp"
+#include "src/import/import_peridem.hpp"
 #include "src/results/render.hpp"
 #include "src/sim/run.hpp"
 
@@ -26,6 +27,7 @@ struct Arguments {
     std::vector<std::string> overrides;
     RunOptions run;
     RenderOptions render;
+    ImportOptions import;
     bool markdown = false, profile = false;
     std::string resumed;  ///< folder of a run
 };
@@ -98,6 +100,43 @@ int draw(const Arguments& arguments) {
     return 0;
 }
 
+int import(const Arguments& arguments) {
+    const ImportReport report = import_peridem(arguments.import);
+    fmt::print("imported         {} bodies, {} shapes\n", report.n_bodies, report.n_shapes);
+    for (const std::string& text : report.differs) fmt::print("differs          {}\n", text);
+    for (const std::string& file : report.files) fmt::print("written          {}\n", file);
+    return 0;
+}
+
+void add_import(CLI::App& app, Arguments& arguments) {
+    CLI::App& command = *app.add_subcommand("import", "Make a deck from that of another program");
+    command.require_subcommand(0, 1);
+    CLI::App& peridem = *command.add_subcommand(
+        "peridem",
+        "A PeriDEM deck (YAML, meshes, table of grains); docs/import.md says what becomes of its keys");
+    peridem.add_option("input", arguments.import.input, "PeriDEM's YAML file, e.g. inp/input_0.yaml")
+        ->required()
+        ->type_name("FILE");
+    peridem
+        .add_option("-o,--output", arguments.import.output,
+                    "Deck to write; meshes and tables of grains go beside it")
+        ->required()
+        ->type_name("DECK");
+    peridem
+        .add_option_function<std::string>(
+            "--horizon",
+            [&arguments](const std::string& word) {
+                arguments.import.horizon =
+                    word == "scaled" ? ImportedHorizon::scaled : ImportedHorizon::absolute;
+            },
+            "absolute (default): as in PeriDEM, a shape for each size of grain; scaled: grows with the "
+            "grain, "
+            "one shape a zone, which runs faster")
+        ->type_name("absolute|scaled")
+        ->check(CLI::IsMember({"absolute", "scaled"}));
+    peridem.add_flag("--force", arguments.import.force, "Overwrite files that exist");
+}
+
 void add_overrides(CLI::App& command, Arguments& arguments) {
     command
         .add_option("--set", arguments.overrides,
@@ -160,6 +199,7 @@ int parse_and_run(int argc, char** argv) {
         ->type_name("last|K|all")
         ->capture_default_str();
 
+    add_import(app, arguments);
     for (CLI::App* command : app.get_subcommands({}))
         command->set_version_flag("--version", "quern " QUERN_VERSION);
 
@@ -170,7 +210,7 @@ int parse_and_run(int argc, char** argv) {
         return report(std::string(error.what()) + " (quern --help)", InputError::exit_code);
     }
     if (app.get_subcommands().empty()) {
-        return report("a command is required: run, check, schema or render (quern --help)",
+        return report("a command is required: run, check, schema, render or import (quern --help)",
                       InputError::exit_code);
     }
     if (run_command.parsed() && arguments.deck.empty() && arguments.resumed.empty())
@@ -181,6 +221,11 @@ int parse_and_run(int argc, char** argv) {
                       InputError::exit_code);
     if (run_command.parsed()) return run(arguments);
     if (render_command.parsed()) return draw(arguments);
+    if (app.got_subcommand("import")) {
+        if (app.get_subcommand("import")->get_subcommands().empty())
+            return report("a format is required: peridem (quern import --help)", InputError::exit_code);
+        return import(arguments);
+    }
     std::string text;
     if (check_command.parsed())
         text = resolved_yaml(read_deck(arguments.deck, arguments.overrides));

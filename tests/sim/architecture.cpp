@@ -74,6 +74,7 @@ TEST_CASE("Architecture: a lower room includes nothing of a higher one") {
     // Reading and writing know nothing of the simulation.
     CHECK(upward("src/deck", {"src/sim", "src/mesh", "src/results", "contact/"}) == "");
     CHECK(upward("src/mesh", {"src/sim", "src/results", "contact/"}) == "");
+    CHECK(upward("src/import", {"src/sim", "contact/", "particles/"}) == "");
     CHECK(upward("src/results", {"src/sim", "src/mesh", "contact/", "particles/"}) == "");
 }
 

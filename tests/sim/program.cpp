@@ -85,6 +85,14 @@ TEST_CASE("Program: bad input ends with 2 and one line") {
     check_failure(quern(folder, {"run", deck, "--set", "grains.0.position=[2, 0.1]", "-o", deck + ".out"}), 2,
                   "wall 'y-'");
     check_failure(quern(folder, {"render", deck + ".none", "-o", deck + ".png"}), 2, "none");
+    check_failure(quern(folder, {"import", "peridem", deck + ".none", "-o", deck + ".new"}), 2,
+                  "no such file");
+    check_failure(quern(folder, {"import", "peridem", deck, "-o", deck + ".new"}), 2,
+                  "title: got an unknown key");
+    check_failure(quern(folder, {"import", "peridem", deck}), 2, "--output is required");
+    check_failure(quern(folder, {"import", "peridm", deck}), 2, "peridm");
+    check_failure(quern(folder, {"import"}), 2, "a format is required: peridem");
+    check_failure(quern(folder, {"import", "peridem", deck, "-o", "x", "--horizon", "fixed"}), 2, "absolute");
 }
 
 TEST_CASE("Program: a run that goes wrong ends with 3 and keeps its results") {
