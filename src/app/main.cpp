@@ -1,4 +1,4 @@
-// The command line: quern run | check | schema | render | import.
+// The command line: quern run | sweep | compare | check | schema | render | import.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -14,6 +14,7 @@
 #include "src/import/import_peridem.hpp"
 #include "src/results/render.hpp"
 #include "src/sim/run.hpp"
+#include "src/study/sweep.hpp"
 
 namespace {
 
@@ -28,6 +29,7 @@ struct Arguments {
     RunOptions run;
     RenderOptions render;
     ImportOptions import;
+    SweepOptions sweep;
     bool markdown = false, profile = false;
     std::string resumed;  ///< folder of a run
 };
@@ -145,6 +147,40 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
         ->allow_extra_args(false);
 }
 
+CLI::App& add_sweep(CLI::App& app, Arguments& arguments) {
+    SweepOptions& options = arguments.sweep;
+    CLI::App& command = *app.add_subcommand("sweep", "Run a deck under all combinations of some values");
+    command.add_option("deck", options.base.deck, "Deck (YAML)")->required()->type_name("DECK");
+    command.add_option("-o,--output", options.directory, "Folder of the table and of runs/")
+        ->required()
+        ->type_name("DIR");
+    command
+        .add_option("--set", options.settings,
+                    "A key of the deck and its values, e.g. --set params.mu=0.1,0.3; repeatable")
+        ->type_name("KEY=VALUE,...")
+        ->allow_extra_args(false);
+    command
+        .add_option(
+            "--value", options.values,
+            "A column of the table, e.g. grains.0.x.last or loss=history.contact_loss.max; repeatable")
+        ->type_name("[NAME=]FORMULA")
+        ->allow_extra_args(false);
+    command.add_option("-j,--jobs", options.at_once, "Runs at a time")
+        ->type_name("N")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    command.add_option("--threads", options.base.threads, "Threads of each run")
+        ->type_name("T")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    return command;
+}
+
+/// Path of this program, to start its runs by.
+std::string own_path() {
+    return std::filesystem::read_symlink("/proc/self/exe").string();
+}
+
 /// Declares all commands and returns what the chosen one does.
 int parse_and_run(int argc, char** argv) {
     Arguments arguments;
@@ -172,6 +208,8 @@ int parse_and_run(int argc, char** argv) {
         ->check(CLI::Range(1, 4096));
     run_command.add_flag("--profile", arguments.profile, "Print what each stage of the step took");
     add_overrides(run_command, arguments);
+
+    CLI::App& sweep_command = add_sweep(app, arguments);
 
     CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");
     check_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
@@ -210,8 +248,9 @@ int parse_and_run(int argc, char** argv) {
         return report(std::string(error.what()) + " (quern --help)", InputError::exit_code);
     }
     if (app.get_subcommands().empty()) {
-        return report("a command is required: run, check, schema, render or import (quern --help)",
-                      InputError::exit_code);
+        return report(
+            "a command is required: run, sweep, compare, check, schema, render or import (quern --help)",
+            InputError::exit_code);
     }
     if (run_command.parsed() && arguments.deck.empty() && arguments.resumed.empty())
         return report("run: a deck, or --resume and a folder, is required (quern run --help)",
@@ -220,6 +259,11 @@ int parse_and_run(int argc, char** argv) {
         return report("run: --set does not go with --resume: the run goes on with its own deck",
                       InputError::exit_code);
     if (run_command.parsed()) return run(arguments);
+    if (sweep_command.parsed()) {
+        arguments.sweep.base.program = own_path();
+        arguments.sweep.terminal = isatty(STDERR_FILENO) != 0;
+        return sweep(arguments.sweep);
+    }
     if (render_command.parsed()) return draw(arguments);
     if (app.got_subcommand("import")) {
         if (app.get_subcommand("import")->get_subcommands().empty())

@@ -1,6 +1,7 @@
 #include "src/results/writer.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <filesystem>
 #include <optional>
@@ -15,20 +16,6 @@
 namespace quern {
 
 namespace {
-
-std::string make_history_header(int dimension) {
-    return std::string(
-               "time,kinetic,elastic,contact_elastic,gravity,damping,friction,contact_loss,fracture,"
-               "transfer_loss,external_work,residual,throughput,") +
-           (dimension == 2 ? "momentum_x,momentum_y,angular_momentum\n"
-                           : "momentum_x,momentum_y,momentum_z,"
-                             "angular_momentum_x,angular_momentum_y,angular_momentum_z\n");
-}
-
-std::string make_grain_header(int dimension) {
-    return dimension == 2 ? "time,grain,x,y,vx,vy,angle,omega,fx,fy\n"
-                          : "time,grain,x,y,z,vx,vy,vz,angle,omega,fx,fy,fz\n";
-}
 
 /// ",x,y" or ",x,y,z", each number as short as reads back to the same bits.
 std::string cells(const double (&vector)[3], int dimension) {
@@ -58,7 +45,32 @@ std::int64_t file_size(const std::string& path) {
     return error ? 0 : static_cast<std::int64_t>(size);
 }
 
+/// The names as a line of CSV.
+std::string header(const std::vector<std::string>& columns) {
+    return fmt::format("{}\n", fmt::join(columns, ","));
+}
+
 }  // namespace
+
+std::vector<std::string> history_columns(int dimension) {
+    std::vector<std::string> columns = {"time",       "kinetic",       "elastic",       "contact_elastic",
+                                        "gravity",    "damping",       "friction",      "contact_loss",
+                                        "fracture",   "transfer_loss", "external_work", "residual",
+                                        "throughput", "momentum_x",    "momentum_y"};
+    if (dimension == 2) {
+        columns.push_back("angular_momentum");
+    } else {
+        for (const char* name :
+             {"momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"})
+            columns.push_back(name);
+    }
+    return columns;
+}
+
+std::vector<std::string> grain_columns(int dimension) {
+    if (dimension == 2) return {"time", "grain", "x", "y", "vx", "vy", "angle", "omega", "fx", "fy"};
+    return {"time", "grain", "x", "y", "z", "vx", "vy", "vz", "angle", "omega", "fx", "fy", "fz"};
+}
 
 struct ResultWriter::Files {
     explicit Files(const WriterOptions& options)
@@ -69,8 +81,8 @@ struct ResultWriter::Files {
           grains(directory + "/grains.csv"),
           frames(directory + "/results.h5", dimension, options.title, options.domain),
           xdmf(directory + "/results.xdmf", dimension) {
-        history.write(make_history_header(dimension));
-        grains.write(make_grain_header(dimension));
+        history.write(header(history_columns(dimension)));
+        grains.write(header(grain_columns(dimension)));
         history.flush();
         grains.flush();
         if (options.vtp) vtp.emplace(directory);

@@ -20,6 +20,10 @@ struct WriterOptions {
     std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
 };
 
+/// Names of the columns of history.csv and grains.csv, in their order.
+std::vector<std::string> history_columns(int dimension);
+std::vector<std::string> grain_columns(int dimension);
+
 /// Files of one run. Rows and frames are written on a thread of their own, in the order in which they were
 /// added; an add waits only while the frame before is still being written. Any failure to write throws
 /// OutputError naming the file and the system's reason: of rows and frames by a later add, by flush() or by

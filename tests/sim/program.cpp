@@ -3,15 +3,12 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/sim/program_runs.hpp"
+#include "tests/sim/decks.hpp"
+#include "tests/sim/program.hpp"
 
 namespace quern::test {
 
 namespace {
-
-bool is_one_line(const std::string& text) {
-    return !text.empty() && text.back() == '\n' && text.find('\n') == text.size() - 1;
-}
 
 const std::string falling = plane_deck + R"yaml(time: {end: 0.05}
 gravity: [0, -9.8]
@@ -19,15 +16,6 @@ walls: [{side: y-}]
 output: {track: all}
 grains: [{shape: disk, material: rubber, position: [2, 0.55]}]
 )yaml";
-
-/// Ends with the code, says why in one line, and says nothing else.
-void check_failure(const Result& result, int code, const std::string& word) {
-    CAPTURE(result.err);
-    CHECK(result.code == code);
-    CHECK(is_one_line(result.err));
-    CHECK(result.err.rfind("quern: error: ", 0) == 0);
-    CHECK(contains(result.err, word));
-}
 
 }  // namespace
 

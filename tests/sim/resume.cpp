@@ -3,7 +3,8 @@
 #include <csignal>
 #include <thread>
 
-#include "tests/sim/program_runs.hpp"
+#include "tests/sim/decks.hpp"
+#include "tests/sim/program.hpp"
 
 namespace quern::test {
 

@@ -1,6 +1,7 @@
-// The built program as a child of the test.
+// The built program, for tests of what it does as a whole.
 #pragma once
 
+#include <doctest/doctest.h>
 #include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -8,8 +9,10 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <string>
+#include <vector>
 
-#include "tests/sim/decks.hpp"
+#include "tests/deck/deck_files.hpp"
 
 namespace quern::test {
 
@@ -41,6 +44,7 @@ class Program {
         execv(argv[0], argv.data());
         _exit(127);
     }
+    pid_t id() const { return child_; }
     void signal(int number) const { kill(child_, number); }
     Result wait() const {
         int status = 0;
@@ -57,6 +61,19 @@ class Program {
 inline Result quern(const TempFolder& folder, const std::vector<std::string>& arguments,
                     const std::string& out = {}) {
     return Program(folder, arguments, out).wait();
+}
+
+inline bool is_one_line(const std::string& text) {
+    return !text.empty() && text.back() == '\n' && text.find('\n') == text.size() - 1;
+}
+
+/// Ends with the code, says why in one line, and says nothing else.
+inline void check_failure(const Result& result, int code, const std::string& word) {
+    CAPTURE(result.err);
+    CHECK(result.code == code);
+    CHECK(is_one_line(result.err));
+    CHECK(result.err.rfind("quern: error: ", 0) == 0);
+    CHECK(result.err.find(word) != std::string::npos);
 }
 
 }  // namespace quern::test
