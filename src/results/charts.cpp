@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 
 #include "src/results/offscreen.hpp"
@@ -22,6 +23,7 @@ constexpr int oversampling = 2;
 constexpr Rgb ink = {40, 40, 40}, grid_color = {228, 228, 228}, legend_edge = {200, 200, 200},
               white = {255, 255, 255};
 constexpr double line_width = 1.8, marker_size = 8.0;
+constexpr double bar_width = 0.6;  // of the distance of two
 
 struct Rect {
     double x = 0, y = 0, width = 0, height = 0;
@@ -58,8 +60,10 @@ Points make_points(const ChartLine& line, const Axis& x, const Axis& y) {
     return points;
 }
 
-void set_range(Axis& axis, const std::vector<Points>& lines, std::size_t c) {
-    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+/// Covers the points, and from `low` to `high` where these are given.
+void set_range(Axis& axis, const std::vector<Points>& lines, std::size_t c,
+               double low = std::numeric_limits<double>::max(),
+               double high = std::numeric_limits<double>::lowest()) {
     for (const Points& points : lines)
         for (const auto& point : points) {
             low = std::min(low, point[c]);
@@ -78,9 +82,19 @@ class ChartPainter {
   public:
     ChartPainter(const Chart& chart, const Rect& place, Painter& painter)
         : chart_(chart), place_(place), painter_(painter), x_{.log = chart.log_x}, y_{.log = chart.log_y} {
-        for (const ChartLine& line : chart.lines) lines_.push_back(make_points(line, x_, y_));
-        set_range(x_, lines_, 0);
-        set_range(y_, lines_, 1);
+        for (const ChartLine& line : chart.lines) {
+            lines_.push_back(make_points(line, x_, y_));
+            feet_.emplace_back();
+            if (line.bar) stack(lines_.back(), feet_.back());
+        }
+        if (chart.categories.empty())
+            set_range(x_, lines_, 0);
+        else
+            set_range(x_, {}, 0, -0.5, static_cast<double>(chart.categories.size()) - 0.5);
+        if (tops_.empty())
+            set_range(y_, lines_, 1);
+        else
+            set_range(y_, lines_, 1, 0.0, 0.0);
     }
 
     void paint() {
@@ -96,6 +110,22 @@ class ChartPainter {
     static constexpr TextStyle tick_style{.size = 12}, name_style{.size = 13};
     static constexpr TextStyle legend_style{.size = 12, .horizontal = Align::low};
     static constexpr double row_height = 18, sample_width = 28, legend_padding = 8;
+
+    /// Lifts a part of the bars upon those before it.
+    void stack(Points& points, std::vector<double>& feet) {
+        for (auto& point : points) {
+            double& top = tops_[point[0]];
+            feet.push_back(top);
+            top += point[1];
+            point[1] = top;
+        }
+    }
+
+    Rect bar_box(std::size_t line, std::size_t i) const {
+        const double x = x_.pixel(lines_[line][i][0]), width = bar_width * x_.length / (x_.high - x_.low);
+        const double foot = y_.pixel(feet_[line][i]), top = y_.pixel(lines_[line][i][1]);
+        return {x - 0.5 * width, std::min(foot, top), width, std::abs(top - foot)};
+    }
 
     void lay_out() {
         const double below = 58, above = chart_.title.empty() ? 18 : 42;
@@ -141,6 +171,12 @@ class ChartPainter {
         std::size_t n = 0;
         for (std::size_t l = 0; l < lines_.size(); ++l)
             for (std::size_t i = 0; i < lines_[l].size(); ++i) {
+                if (chart_.lines[l].bar) {
+                    const Rect bar = bar_box(l, i);
+                    n += bar.x < box.x + box.width && box.x < bar.x + bar.width &&
+                         bar.y < box.y + box.height && box.y < bar.y + bar.height;
+                    continue;
+                }
                 const double x1 = x_.pixel(lines_[l][i][0]), y1 = y_.pixel(lines_[l][i][1]);
                 n += inside(x1, y1);
                 if (i == 0 || !chart_.lines[l].line) continue;
@@ -172,14 +208,32 @@ class ChartPainter {
         return box;
     }
 
+    std::vector<Tick> x_ticks() const {
+        if (chart_.categories.empty()) return x_.ticks(70);
+        std::vector<Tick> ticks;
+        for (const std::string& name : chart_.categories)
+            ticks.push_back({static_cast<double>(ticks.size()), name});
+        return ticks;
+    }
+
+    /// Letters as large as lets the names stand side by side.
+    int category_size() {
+        const double room = 0.95 * x_.length / static_cast<double>(chart_.categories.size());
+        int size = tick_style.size;
+        for (const std::string& name : chart_.categories)
+            while (size > 7 && painter_.text_width(name, {.size = size}) > room) --size;
+        return size;
+    }
+
     void paint_axes() {
         const double left = plot_.x, bottom = plot_.y, right = left + plot_.width,
                      top = bottom + plot_.height;
-        for (const Tick& tick : x_.ticks(70)) {
+        const int size = chart_.categories.empty() ? tick_style.size : category_size();
+        for (const Tick& tick : x_ticks()) {
             const double at = x_.pixel(tick.value);
-            painter_.add_line(at, bottom, at, top, 1.0, grid_color);
+            if (chart_.categories.empty()) painter_.add_line(at, bottom, at, top, 1.0, grid_color);
             painter_.add_line(at, bottom, at, bottom - 5, 1.0, ink);
-            painter_.add_text(at, bottom - 9, tick.label, {.size = tick_style.size, .vertical = Align::high});
+            painter_.add_text(at, bottom - 9, tick.label, {.size = size, .vertical = Align::high});
         }
         for (const Tick& tick : y_.ticks(45)) {
             const double at = y_.pixel(tick.value);
@@ -202,6 +256,11 @@ class ChartPainter {
     void paint_line(std::size_t i) {
         const ChartLine& line = chart_.lines[i];
         const Rgb color = cycle_color(line.color);
+        for (std::size_t k = 0; line.bar && k < lines_[i].size(); ++k) {
+            const Rect box = bar_box(i, k);
+            painter_.add_box(box.x, box.y, box.width, box.height, color);
+        }
+        if (line.bar) return;
         std::vector<double> pixels;
         for (const auto& point : lines_[i])
             pixels.insert(pixels.end(), {x_.pixel(point[0]), y_.pixel(point[1])});
@@ -224,8 +283,11 @@ class ChartPainter {
                 box.x + legend_padding + column * (sample_width + 8 + label_width_ + legend_padding);
             const double y = box.y + box.height - 0.5 * legend_padding - (row + 0.5) * row_height;
             const Rgb color = cycle_color(line.color);
-            if (line.line) painter_.add_curve({x, y, x + sample_width, y}, line_width, color, line.dashed);
-            if (line.markers || !line.line)
+            if (line.bar)
+                painter_.add_box(x, y - 5, sample_width, 10, color);
+            else if (line.line)
+                painter_.add_curve({x, y, x + sample_width, y}, line_width, color, line.dashed);
+            if (!line.bar && (line.markers || !line.line))
                 painter_.add_marker(x + 0.5 * sample_width, y, marker_size, shape_of(line.color), color);
             painter_.add_text(x + sample_width + 8, y, line.label, legend_style);
         }
@@ -235,7 +297,9 @@ class ChartPainter {
     Rect place_, plot_;
     Painter& painter_;
     Axis x_, y_;
-    std::vector<Points> lines_;
+    std::vector<Points> lines_;              // of bars: their upper ends
+    std::vector<std::vector<double>> feet_;  // of bars: their lower ends
+    std::map<double, double> tops_;          // of all bars, by x
     double widest_ = 0.0, label_width_ = 0.0;
     int n_rows_ = 0, n_columns_ = 1;
 };

@@ -19,7 +19,7 @@ struct RenderOptions {
 /// frame (naming the valid ones), OutputError if nothing can be drawn.
 std::vector<std::string> render(const RenderOptions& options);
 
-/// A line of a chart. Points without lines: dashes = 0.
+/// A line of a chart.
 struct ChartLine {
     std::string label;
     std::vector<double> x, y;
@@ -27,6 +27,7 @@ struct ChartLine {
     bool dashed = false;
     bool markers = false;
     bool line = true;
+    bool bar = false;  ///< a part of the bars at its x, upon the parts of the lines before; no log_y
 };
 
 struct Chart {
@@ -34,6 +35,7 @@ struct Chart {
     std::vector<ChartLine> lines;
     bool log_x = false, log_y = false;
     bool legend = true;
+    std::vector<std::string> categories = {};  ///< names of x = 0, 1, ... instead of numbers; no log_x
 };
 
 /// Draws charts in a grid of `columns`, each about 560 x 420 pixels, into one PNG.

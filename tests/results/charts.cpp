@@ -118,6 +118,32 @@ TEST_CASE("Charts: the legend hides no data") {
     CHECK(with == doctest::Approx(without).epsilon(0.02));
 }
 
+TEST_CASE("Charts: bars stand upon each other, over the names of their places") {
+    const ScratchDirectory scratch;
+    Chart chart;
+    chart.legend = false;
+    chart.categories = {"one", "another"};
+    ChartLine lower, upper;
+    lower.x = upper.x = {0, 1};
+    lower.y = {1, 2};
+    upper.y = {2, 1};
+    lower.bar = upper.bar = true;
+    lower.color = 0;
+    upper.color = 1;
+    chart.lines = {lower, upper};
+    draw_charts({chart}, 1, scratch.path("bars.png"));
+    const Picture picture(scratch.path("bars.png"));
+    // The parts have the same areas: 1 + 2 and 2 + 1; a bar is 0.6 of the distance of two.
+    const int first = picture.count(cycle_color(0)), second = picture.count(cycle_color(1));
+    CHECK(first > 20000);
+    CHECK(second == doctest::Approx(first).epsilon(0.02));
+    // The axis ends at the highest bar: at 2 instead of 3.
+    chart.lines = {lower};
+    draw_charts({chart}, 1, scratch.path("bars.png"));
+    CHECK(Picture(scratch.path("bars.png")).count(cycle_color(0)) ==
+          doctest::Approx(1.5 * first).epsilon(0.03));
+}
+
 TEST_CASE("Charts: unequal lengths and failing files are errors") {
     const ScratchDirectory scratch;
     Chart chart;
