@@ -14,6 +14,7 @@
 #include "src/import/import_peridem.hpp"
 #include "src/results/render.hpp"
 #include "src/sim/run.hpp"
+#include "src/study/compare.hpp"
 #include "src/study/sweep.hpp"
 
 namespace {
@@ -30,6 +31,7 @@ struct Arguments {
     RenderOptions render;
     ImportOptions import;
     SweepOptions sweep;
+    CompareOptions compare;
     bool markdown = false, profile = false;
     std::string resumed;  ///< folder of a run
 };
@@ -176,6 +178,44 @@ CLI::App& add_sweep(CLI::App& app, Arguments& arguments) {
     return command;
 }
 
+CLI::App& add_compare(CLI::App& app, Arguments& arguments) {
+    CompareOptions& options = arguments.compare;
+    CLI::App& command = *app.add_subcommand("compare", "Run variants of a deck and report how they differ");
+    command.add_option("deck", options.base.deck, "Deck (YAML)")->required()->type_name("DECK");
+    command.add_option("-o,--output", options.directory, "Folder of the report and of runs/")
+        ->required()
+        ->type_name("DIR");
+    command
+        .add_option(
+            "--variant", options.variants,
+            "A variant, e.g. --variant \"flip: contact.rule=seed, contact.coupling=flip\"; repeatable; "
+            "'default' stands for pair, surface, seed and node_pair, which are taken if none is given")
+        ->type_name("'NAME: KEY=VALUE, ...'")
+        ->allow_extra_args(false);
+    command.add_option("--over", options.over, "A key and its values, each for all variants")
+        ->type_name("KEY=VALUE,...");
+    command.add_option("--set", options.settings, "Set a key of the deck in all runs; repeatable")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    command
+        .add_option(
+            "--reference", options.reference,
+            "What differences are to: a variant (at the last value of --over), or a table as grains.csv; "
+            "default: the first variant")
+        ->type_name("NAME|FILE.csv");
+    command.add_option("--repeat", options.n_repeats, "Runs of each variant, in turns, for the times")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    command.add_flag("--reuse", options.reuse,
+                     "Take runs that are done already; their times are those of then");
+    command.add_option("--threads", options.base.threads, "Threads of each run")
+        ->type_name("T")
+        ->check(CLI::Range(1, 4096))
+        ->capture_default_str();
+    return command;
+}
+
 /// Path of this program, to start its runs by.
 std::string own_path() {
     return std::filesystem::read_symlink("/proc/self/exe").string();
@@ -210,6 +250,7 @@ int parse_and_run(int argc, char** argv) {
     add_overrides(run_command, arguments);
 
     CLI::App& sweep_command = add_sweep(app, arguments);
+    CLI::App& compare_command = add_compare(app, arguments);
 
     CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");
     check_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
@@ -263,6 +304,11 @@ int parse_and_run(int argc, char** argv) {
         arguments.sweep.base.program = own_path();
         arguments.sweep.terminal = isatty(STDERR_FILENO) != 0;
         return sweep(arguments.sweep);
+    }
+    if (compare_command.parsed()) {
+        arguments.compare.base.program = own_path();
+        arguments.compare.terminal = isatty(STDERR_FILENO) != 0;
+        return compare(arguments.compare);
     }
     if (render_command.parsed()) return draw(arguments);
     if (app.got_subcommand("import")) {

@@ -15,8 +15,6 @@ namespace quern {
 
 namespace {
 
-constexpr int interrupted_code = 130;  // of a run that was asked to stop
-
 std::string log_file(const StudyRun& run) {
     return run.directory + ".log";
 }
@@ -59,7 +57,7 @@ RunEnd end_of(const StudyRun& run, const ProcessEnd& end) {
     result.exit_code = std::max(0, end.code);
     if (end.code == 0 && is_done(run)) {
         result.outcome = "done";
-    } else if (end.code == interrupted_code || end.signal == SIGTERM || end.signal == SIGINT) {
+    } else if (end.code == interrupted_exit_code || end.signal == SIGTERM || end.signal == SIGINT) {
         result.outcome = "interrupted";
     } else {
         result.outcome = "failed";

@@ -8,6 +8,9 @@
 
 namespace quern {
 
+/// Exit code of a run or a study that was asked to stop.
+constexpr int interrupted_exit_code = 130;
+
 /// What all runs of a study share.
 struct StudyBase {
     std::string program;  ///< path of quern itself

@@ -3,25 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <filesystem>
 #include <limits>
 
 #include "grid/error.hpp"
 #include "src/deck/read_deck.hpp"
 #include "src/results/json.hpp"
 #include "src/results/output_file.hpp"
-#include "src/results/progress.hpp"
 #include "src/results/stop_signals.hpp"
 #include "src/study/run_values.hpp"
 #include "src/study/settings.hpp"
+#include "src/study/study_progress.hpp"
 #include "src/study/table.hpp"
 
 namespace quern {
 
 namespace {
-
-constexpr int failed_code = SimulationError::exit_code, interrupted_code = 130;
 
 struct Numbers {
     const char *column, *path;  ///< of the table, of summary.json
@@ -47,37 +43,6 @@ constexpr Numbers summary_numbers[] = {{"steps", "steps"},
                                        {"residual_relative", "energy.residual_relative"},
                                        {"momentum_error_linear", "momentum_error.linear"},
                                        {"momentum_error_angular", "momentum_error.angular"}};
-
-/// Tells how far the sweep is: on a terminal in one line, otherwise a line a run.
-class SweepProgress {
-  public:
-    SweepProgress(std::size_t n_to_run, bool terminal) : n_to_run_(n_to_run), terminal_(terminal) {}
-
-    void ended(const std::string& name, const RunEnd& end, double seconds) {
-        ++n_ended_;
-        const double passed = std::chrono::duration<double>(Clock::now() - start_).count();
-        const double left =
-            passed / static_cast<double>(n_ended_) * static_cast<double>(n_to_run_ - n_ended_);
-        const std::string line = fmt::format("{}/{}  {} left  {}: {} in {:.2f} s", n_ended_, n_to_run_,
-                                             make_duration(left), name, end.outcome, seconds);
-        if (terminal_)
-            fmt::print(stderr, "\r{}\x1b[K", line);
-        else
-            fmt::print(stderr, "{}\n", line);
-        if (terminal_ && end.outcome == "failed") fmt::print(stderr, "\n");
-        if (end.outcome == "failed") fmt::print(stderr, "  {}\n", end.message);
-        std::fflush(stderr);
-    }
-    void finish() const {
-        if (terminal_ && n_ended_ > 0) fmt::print(stderr, "\n");
-    }
-
-  private:
-    using Clock = std::chrono::steady_clock;
-    std::size_t n_to_run_, n_ended_ = 0;
-    bool terminal_;
-    Clock::time_point start_ = Clock::now();
-};
 
 struct Plan {
     std::vector<SweptKey> keys;
@@ -149,7 +114,7 @@ int sweep(const SweepOptions& options) {
     }
     fmt::print("{} runs, {} of them done before\n", plan.runs.size(), plan.runs.size() - missing.size());
     std::fflush(stdout);
-    SweepProgress progress(missing.size(), options.terminal);
+    StudyProgress progress(missing.size(), options.terminal);
     std::vector<ProcessJob> jobs;
     for (const std::size_t i : missing) jobs.push_back(make_job(options.base, plan.runs[i]));
     run_processes(jobs, options.at_once, [&](std::size_t job, const ProcessEnd& end) {
@@ -168,7 +133,7 @@ int sweep(const SweepOptions& options) {
     fmt::print("done {}, failed {}, left {}: {}/sweep.csv\n", count(ends, "done"), n_failed, n_left,
                options.directory);
     if (n_left > 0) fmt::print("the same command runs what is left\n");
-    return stop_requested() ? interrupted_code : n_failed + n_left > 0 ? failed_code : 0;
+    return stop_requested() ? interrupted_exit_code : n_failed + n_left > 0 ? SimulationError::exit_code : 0;
 }
 
 }  // namespace quern

@@ -48,7 +48,8 @@ void Table::add(std::vector<Cell> row) {
 
 std::string Table::csv() const {
     std::string text;
-    for (std::size_t c = 0; c < columns_.size(); ++c) text += fmt::format("{}{}", c > 0 ? "," : "", csv_text(columns_[c]));
+    for (std::size_t c = 0; c < columns_.size(); ++c)
+        text += fmt::format("{}{}", c > 0 ? "," : "", csv_text(columns_[c]));
     text += "\n";
     for (const std::vector<Cell>& row : rows_) {
         for (std::size_t c = 0; c < row.size(); ++c) {
