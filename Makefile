@@ -3,7 +3,7 @@ PRESET ?= release
 BUILD  := build/$(PRESET)
 JOBS   ?= $(shell nproc)
 
-.PHONY: all build packages demo test bench bench-long bench-instructions bench-docs clang debug asan tsan format check-format clean help
+.PHONY: all build packages demo test bench bench-long bench-methods bench-instructions bench-docs clang debug asan tsan format check-format clean help
 
 all: build            ## build (PRESET=release): build/release/quern
 
@@ -31,6 +31,9 @@ bench: build          ## kernels, stages, whole problems: table, out/bench/bench
 
 bench-long: build     ## the same with 10^4 and 10^5 disks, 1000 spheres, one and two threads
 	$(BUILD)/quern_bench -o out/bench --long --revision "$(REVISION)"
+
+bench-methods: build   ## contact by all methods against the number of grains, 10^2 to 10^5: out/bench/methods.*
+	$(BUILD)/quern_bench -o out/bench --methods --long --revision "$(REVISION)"
 
 bench-instructions: build  ## instructions counted by callgrind: out/bench/instructions.json
 	tests/benchmark/instructions.py $(BUILD)/quern_count -o out/bench --revision "$(REVISION)"

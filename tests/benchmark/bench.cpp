@@ -11,6 +11,7 @@
 #include "src/results/output_file.hpp"
 #include "tests/benchmark/kernels.hpp"
 #include "tests/benchmark/machine.hpp"
+#include "tests/benchmark/methods.hpp"
 #include "tests/benchmark/plots.hpp"
 #include "tests/benchmark/problems.hpp"
 #include "tests/benchmark/roofline.hpp"
@@ -23,6 +24,7 @@ struct Options {
     std::string directory = "out/bench", revision = "unknown";
     std::string only;  ///< part of a name; empty: everything
     bool all = false;
+    bool methods = false;
 };
 
 class Bench {
@@ -37,14 +39,19 @@ class Bench {
         for (const int n : threads) measure_roof(n);
         if (n_cores() > threads.back()) measure_roof(n_cores());
         fmt::print("\n{}", table_head());
-        run_kernels();
-        for (const Problem& problem : make_problems(BENCH_DIR, options_.all))
-            if (problem.name.find(options_.only) != std::string::npos)
-                for (const int n : threads) add(with_speed_up(run_problem(problem, n)));
+        if (options_.methods) {
+            compare_methods();
+        } else {
+            run_kernels();
+            for (const Problem& problem : make_problems(BENCH_DIR, options_.all))
+                if (problem.name.find(options_.only) != std::string::npos)
+                    for (const int n : threads) add(with_speed_up(run_problem(problem, n)));
+        }
+        const std::string file = options_.directory + (options_.methods ? "/methods" : "/bench");
         create_directory(options_.directory);
-        write_whole_file(options_.directory + "/bench.json", report_json(report_));
-        draw_report(report_, options_.directory + "/bench.png");
-        fmt::print("\n{0}/bench.json, {0}/bench.png\n", options_.directory);
+        write_whole_file(file + ".json", report_json(report_));
+        draw_report(report_, file + ".png");
+        fmt::print("\n{0}.json, {0}.png\n", file);
     }
 
   private:
@@ -54,6 +61,13 @@ class Bench {
         fmt::print("{:16}triad {:.1f} GB/s in memory, {:.1f} in cache; FMA {:.1f} GFlop/s\n",
                    fmt::format("{} thread{}", threads, threads > 1 ? "s" : ""), roof.triad, roof.triad_cache,
                    roof.fma);
+    }
+
+    void compare_methods() {
+        add(run_methods(BENCH_DIR, options_.all));
+        fmt::print("\nslope of log(contact in a step) over log(grains)\n");
+        for (const Slope& slope : slopes(report_.entries))
+            fmt::print("{:38}{:9}{:6.3f}\n", slope.method, slope.moving ? "moving" : "at rest", slope.value);
     }
 
     void run_kernels() {
@@ -98,6 +112,8 @@ int main(int argc, char** argv) {
     app.add_option("--revision", options.revision, "Of the source, to be written into bench.json")
         ->capture_default_str();
     app.add_option("--only", options.only, "Kernels and problems with this in their names");
+    app.add_flag("--methods", options.methods,
+                 "Instead: contact by all methods against the number of grains");
     app.add_flag("--long", options.all, "Also 10^4 and 10^5 disks, 1000 spheres, and two threads");
     CLI11_PARSE(app, argc, argv);
     try {

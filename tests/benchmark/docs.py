@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 """Puts what the benchmark has measured into docs/: tables into performance.md, and its picture.
 
-    docs.py FOLDER         FOLDER: of bench.json, bench.png and, if counted, instructions.json
+    docs.py FOLDER         FOLDER: of bench.json, bench.png and, if there, methods.json, methods.png,
+                           instructions.json
 
 A table stands between the lines "<!-- bench: NAME -->" and "<!-- end -->"; what is between them is replaced.
 """
 
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -74,12 +76,33 @@ def instructions(report):
     return table(["", "unit", "units", "instructions"], rows)
 
 
+def slope(points):
+    """Of log(time of a step) over log(grains), by least squares."""
+    logs = [(math.log(n), math.log(t)) for n, t in points]
+    x = sum(a for a, _ in logs) / len(logs)
+    y = sum(b for _, b in logs) / len(logs)
+    return sum((a - x) * (b - y) for a, b in logs) / sum((a - x) ** 2 for a, _ in logs)
+
+
+def methods(report):
+    entries = [e for e in report["entries"] if e["kind"] == "method"]
+    grains = sorted({e["sizes"]["grains"] for e in entries})
+    rows = []
+    for name, moving in dict.fromkeys((e["name"], e["sizes"]["moving"]) for e in entries):
+        own = {e["sizes"]["grains"]: e for e in entries if (e["name"], e["sizes"]["moving"]) == (name, moving)}
+        cost = [f"{own[n]['median']:.1f}" if n in own else "-" for n in grains]
+        rows.append([name, "moving" if moving else "at rest", *cost,
+                     f"{slope([(n, e['median'] * e['count']) for n, e in own.items()]):.3f}"])
+    return table(["contact by", "grains", *(whole(n) + " grains" for n in grains), "slope"], rows)
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
     folder, page = pathlib.Path(sys.argv[1]), docs / "performance.md"
     text = page.read_text(encoding="utf-8")
-    makers = {"bench.json": (machine, problems, kernels), "instructions.json": (instructions,)}
+    makers = {"bench.json": (machine, problems, kernels), "methods.json": (methods,),
+              "instructions.json": (instructions,)}
     for name, tables in makers.items():
         if not (folder / name).exists():
             print(f"{folder / name} is missing: its tables stay as they are")
@@ -91,8 +114,9 @@ def main():
                 sys.exit(f"docs.py: error: {page} has no place for the table '{make.__name__}'")
             text = place.sub(lambda found: found[1] + "\n" + make(report) + "\n\n" + found[2], text)
     page.write_text(text, encoding="utf-8")
-    if (folder / "bench.png").exists():
-        shutil.copy(folder / "bench.png", docs / "bench.png")
+    for picture in ("bench.png", "methods.png"):
+        if (folder / picture).exists():
+            shutil.copy(folder / picture, docs / picture)
     print(f"{page} written")
 
 

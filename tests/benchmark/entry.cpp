@@ -26,6 +26,10 @@ std::string counted(double value, const char* format) {
 }
 
 std::string note(const Entry& e) {
+    if (e.kind == "method")
+        return fmt::format("{:.0f} grains {}", e.size("grains"),
+                           e.size("moving") > 0.0 ? "moving" : "at rest") +
+               (e.size("step_ns") > 0.0 ? fmt::format(", whole step {:.1f} ns", e.size("step_ns")) : "");
     if (e.kind != "problem") return "";
     std::string text = fmt::format("{:.3g} ms a step", 1e-6 * e.median() * e.count);
     if (e.size("cpu_share") < 0.95)

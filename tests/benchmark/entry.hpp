@@ -9,7 +9,7 @@ namespace quern::bench {
 
 /// One measured thing. `ns` is the time of one unit; bytes and flops are those of one unit, too.
 struct Entry {
-    std::string kind;  ///< "kernel", "stage" or "problem"
+    std::string kind;  ///< "kernel", "stage", "problem" or "method"
     std::string name;
     int threads = 1;
     std::string unit;        ///< "bond", "particle", "slot", ...

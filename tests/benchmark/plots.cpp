@@ -126,6 +126,26 @@ Chart roofline_chart(const Report& report) {
     return chart;
 }
 
+/// Contact by each method, packings at rest or moving.
+Chart method_chart(const Report& report, bool moving) {
+    Chart chart{.title = moving ? "Contact, grains moving" : "Contact, grains at rest",
+                .x_label = "grains",
+                .y_label = "ns per particle and step",
+                .lines = {},
+                .log_x = true,
+                .log_y = true};
+    for (const Entry& e : report.entries) {
+        if (e.kind != "method" || (e.size("moving") > 0.0) != moving) continue;
+        const auto same = [&](const ChartLine& l) { return l.label == e.name; };
+        auto found = std::find_if(chart.lines.begin(), chart.lines.end(), same);
+        if (found == chart.lines.end())
+            found = chart.lines.insert(found, line(e.name, static_cast<int>(chart.lines.size())));
+        found->x.push_back(e.size("grains"));
+        found->y.push_back(e.median());
+    }
+    return chart;
+}
+
 bool has_points(const Chart& chart) {
     return std::any_of(chart.lines.begin(), chart.lines.end(),
                        [](const ChartLine& l) { return l.markers && !l.x.empty(); });
@@ -136,7 +156,8 @@ bool has_points(const Chart& chart) {
 void draw_report(const Report& report, const std::string& file) {
     std::vector<Chart> charts;
     for (const Chart& chart :
-         {cost_chart(report), force_chart(report), memory_chart(report), roofline_chart(report)})
+         {cost_chart(report), force_chart(report), memory_chart(report), roofline_chart(report),
+          method_chart(report, false), method_chart(report, true)})
         if (has_points(chart)) charts.push_back(chart);
     if (!charts.empty()) draw_charts(charts, 2, file);
 }
