@@ -47,12 +47,16 @@ std::string selection(const std::vector<int>& ids, const std::optional<PeridemGe
 }
 
 /// What contact of node pairs is told of two materials.
-std::vector<std::string> pair_keys(const PeridemContact& c) {
-    return {c.radius > 0.0 ? fmt::format("contact_radius: {}", number_text(c.radius))
-                           : fmt::format("radius_factor: {}", number_text(c.radius_factor)),
-            fmt::format("stiffness: {}", number_text(c.stiffness)),
-            fmt::format("restitution: {}", number_text(c.restitution)),
-            fmt::format("damping_factor: {}", number_text(c.damping_factor))};
+std::vector<std::string> pair_keys(const PeridemContact& c, bool damped) {
+    std::vector<std::string> keys = {c.radius > 0.0
+                                         ? fmt::format("contact_radius: {}", number_text(c.radius))
+                                         : fmt::format("radius_factor: {}", number_text(c.radius_factor)),
+                                     fmt::format("stiffness: {}", number_text(c.stiffness))};
+    if (damped) {
+        keys.push_back(fmt::format("restitution: {}", number_text(c.restitution)));
+        keys.push_back(fmt::format("damping_factor: {}", number_text(c.damping_factor)));
+    }
+    return keys;
 }
 
 /// Materials of walls alone: no contact among them.
@@ -126,28 +130,32 @@ std::string materials_section(const PeridemDeck& deck, const PeridemBodies& bodi
 std::string contact_section(const PeridemDeck& deck, const ImportedMaterials& materials) {
     const std::vector<std::size_t>& zones = materials.first_zone;
     const std::vector<bool> walls = walls_only(deck, materials);
-    std::optional<PeridemContact> common;
-    std::string pairs;
+    std::vector<std::pair<std::size_t, std::size_t>> touching;
     bool damped = false, rubbing = false;
     for (std::size_t i = 0; i < zones.size() && !deck.contact.empty(); ++i)
         for (std::size_t j = i; j < zones.size(); ++j) {
             if (walls[i] && walls[j]) continue;
+            touching.emplace_back(i, j);
             const PeridemContact& c = deck.contact[zones[i]][zones[j]];
             damped = damped || c.restitution < 1.0;
             rubbing = rubbing || c.friction > 0.0;
-            if (!common) common = c;
-            if (c == *common) continue;
-            pairs += fmt::format("    - {{between: [{}, {}], friction: {}, {}}}\n", materials.name[zones[i]],
-                                 materials.name[zones[j]], number_text(c.friction), join(pair_keys(c)));
         }
-    if (!common) return "contact: {rule: none}\n";
+    if (touching.empty()) return "contact: {rule: none}\n";
+    const PeridemContact& common = deck.contact[zones[touching[0].first]][zones[touching[0].second]];
     std::vector<std::string> keys = {"radius: published"};
-    for (const std::string& key : pair_keys(*common)) keys.push_back(key);
+    for (const std::string& key : pair_keys(common, damped)) keys.push_back(key);
     keys.push_back(damped ? "damping: centres" : "damping: none");
     if (rubbing) keys.push_back("friction_law: published");
     keys.push_back("particles: all");
     std::string text = fmt::format("contact:\n  method: node_pair\n  friction: {}\n  node_pair:\n    {}\n",
-                                   number_text(common->friction), join(keys, "\n    "));
+                                   number_text(common.friction), join(keys, "\n    "));
+    std::string pairs;
+    for (const auto& [i, j] : touching) {
+        const PeridemContact& c = deck.contact[zones[i]][zones[j]];
+        if (c == common) continue;
+        pairs += fmt::format("    - {{between: [{}, {}], friction: {}, {}}}\n", materials.name[zones[i]],
+                             materials.name[zones[j]], number_text(c.friction), join(pair_keys(c, damped)));
+    }
     if (!pairs.empty()) text += fmt::format("  pairs:\n{}", pairs);
     return text;
 }
