@@ -3,7 +3,7 @@ PRESET ?= release
 BUILD  := build/$(PRESET)
 JOBS   ?= $(shell nproc)
 
-.PHONY: all build packages demo test bench bench-long bench-methods bench-instructions bench-docs clang debug asan tsan format check-format clean help
+.PHONY: all build packages demo test bench bench-long bench-methods bench-instructions bench-docs compare compare-docs clang debug asan tsan format check-format clean help
 
 all: build            ## build (PRESET=release): build/release/quern
 
@@ -40,6 +40,17 @@ bench-instructions: build  ## instructions counted by callgrind: out/bench/instr
 
 bench-docs:           ## out/bench into docs/: tables of performance.md, picture
 	tests/benchmark/docs.py out/bench
+
+compare: build        ## ways of contact side by side, all decks, three resolutions: out/comparison
+	$(BUILD)/comparison_report -o out/comparison
+
+compare-docs:         ## out/comparison into docs/comparison: tables, pictures
+	@mkdir -p docs/comparison
+	@for case in out/comparison/*/; do \
+		name=$$(basename $$case); \
+		sed "s/](\(.*\.png\))/]($${name}_\1)/" $$case/comparison.md > docs/comparison/$$name.md; \
+		for picture in $$case/*.png; do cp $$picture docs/comparison/$${name}_$$(basename $$picture); done; \
+	done
 
 clang debug asan tsan:  ## build with another preset
 	$(MAKE) build PRESET=$@

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 namespace quern {
@@ -34,6 +35,13 @@ double Comparison::level_number(std::size_t level) const {
         if (error == std::errc() && end == text.data() + text.size()) numbers.push_back(value);
     }
     return numbers.size() == levels.size() ? numbers[level] : static_cast<double>(level + 1);
+}
+
+std::string readable_path(const std::string& file) {
+    std::error_code error;
+    const std::filesystem::path from_here = std::filesystem::proximate(file, error);
+    const bool below = !error && !from_here.empty() && *from_here.begin() != "..";
+    return below ? from_here.string() : std::filesystem::path(file).filename().string();
 }
 
 std::vector<QuantityKind> kinds_at(const Comparison& comparison, std::size_t level) {

@@ -52,6 +52,9 @@ struct Comparison {
     double level_number(std::size_t level) const;  ///< the value, or its place where values are no numbers
 };
 
+/// A file as a reader elsewhere would name it: from here if it lies below, or its own name.
+std::string readable_path(const std::string& file);
+
 /// Kinds of all quantities at a level, in the order of the report.
 std::vector<QuantityKind> kinds_at(const Comparison& comparison, std::size_t level);
 

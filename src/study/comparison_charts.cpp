@@ -69,9 +69,22 @@ class ComparisonCharts {
                     {name(i), *rows->second.find("time"), *rows->second.find(column), color(i)});
         const auto reference = comparison_.trajectories.find(grain);
         if (comparison_.reference_is_file && reference != comparison_.trajectories.end())
-            if (const std::vector<double>* values = reference->second.find(column))
-                chart.lines.push_back({"reference", *reference->second.find("time"), *values, 7, true});
+            add_reference(chart, reference->second, column);
         return chart;
+    }
+
+    /// As far as the runs reach.
+    static void add_reference(Chart& chart, const Columns& rows, const std::string& column) {
+        double end = 0.0;
+        for (const ChartLine& line : chart.lines) end = std::max(end, line.x.back());
+        const std::vector<double>*time = rows.find("time"), *values = rows.find(column);
+        if (!values) return;
+        ChartLine line{"reference", {}, {}, 7, true};
+        for (std::size_t i = 0; i < time->size() && (*time)[i] <= end; ++i) {
+            line.x.push_back((*time)[i]);
+            line.y.push_back((*values)[i]);
+        }
+        chart.lines.push_back(std::move(line));
     }
 
     void draw_trajectories() {
@@ -249,7 +262,8 @@ class ComparisonCharts {
         for (const QuantityKind& kind : kinds_at(comparison_, 0)) {
             const bool is_plain = kind.key == contact + "restitution" || kind.key == contact + "duration" ||
                                   kind.key == contact + "peak" || kind.key == contact + "chatter";
-            if (kind.has_order || is_plain) add_level_chart(charts, kind, kind.has_order);
+            const bool is_dull = kind.key == "cost.steps" || kind.key == "cost.memory";
+            if ((kind.has_order && !is_dull) || is_plain) add_level_chart(charts, kind, kind.has_order);
         }
         save(charts, 3, "levels.png");
     }

@@ -24,8 +24,8 @@ std::string code(const std::string& text) {
 
 std::string introduction(const Comparison& comparison) {
     const ComparedRun& first = comparison.runs.front();
-    std::string text =
-        fmt::format("# Comparison: {}\n\nDeck {}", first.deck.title, code(comparison.base.deck));
+    std::string text = fmt::format("# Comparison: {}\n\nDeck {}", first.deck.title,
+                                   code(readable_path(comparison.base.deck)));
     if (!comparison.settings.empty()) text += fmt::format(" with `{}`", join(comparison.settings));
     text += fmt::format("; one run after the other, {} thread{} each", comparison.base.threads,
                         comparison.base.threads == 1 ? "" : "s");
@@ -39,8 +39,10 @@ std::string introduction(const Comparison& comparison) {
         break;
     }
     const bool last = !comparison.over.empty() && !comparison.reference_is_file;
-    text += fmt::format("Differences are to {}{}.\n", code(comparison.reference),
-                        last ? fmt::format(" at `{}`", comparison.level_name(comparison.last_level())) : "");
+    text += fmt::format(
+        "Differences are to {}{}.\n",
+        code(comparison.reference_is_file ? readable_path(comparison.reference) : comparison.reference),
+        last ? fmt::format(" at `{}`", comparison.level_name(comparison.last_level())) : "");
     Table variants({"variant", "settings"});
     for (const Variant& variant : comparison.variants)
         variants.add({variant.name, code(join(variant.overrides))});

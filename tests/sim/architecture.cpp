@@ -76,6 +76,8 @@ TEST_CASE("Architecture: a lower room includes nothing of a higher one") {
     CHECK(upward("src/mesh", {"src/sim", "src/results", "contact/"}) == "");
     CHECK(upward("src/import", {"src/sim", "contact/", "particles/"}) == "");
     CHECK(upward("src/results", {"src/sim", "src/mesh", "contact/", "particles/"}) == "");
+    // Studies run the program, and know it by its files.
+    CHECK(upward("src/study", {"src/sim", "src/mesh", "contact/", "particles/"}) == "");
 }
 
 TEST_CASE("Architecture: file formats, meshers and renderers stay in src, out of headers but their own") {
