@@ -47,6 +47,18 @@ Vector impulse(const Columns& rows, const ContactTime& contact) {
     return sum;
 }
 
+/// Line of centres from the second to the first, mean over a contact with the force as weight.
+Vector mean_line(const Columns& first, const Columns& second, const ContactTime& contact) {
+    const std::vector<double>& time = *first.find("time");
+    Vector sum{};
+    for (std::size_t i = std::max<std::size_t>(1, contact.begin); i < contact.end; ++i) {
+        const Vector line = unit(minus(vector_at(first, position, i), vector_at(second, position, i)));
+        const double weight = norm(vector_at(first, force, i)) * (time[i] - time[i - 1]);
+        for (std::size_t a = 0; a < 3; ++a) sum[a] += weight * line[a];
+    }
+    return sum;
+}
+
 bool is_round(const Deck& deck, int grain) {
     const std::string& name = deck.grains[static_cast<std::size_t>(grain)].shape;
     for (const ShapeDeck& shape : deck.shapes)
@@ -98,11 +110,10 @@ double one_restitution(const Deck& deck, const RunFiles& run, int grain, const C
         Vector sum = push;
         for (std::size_t a = 0; a < 3; ++a) sum[a] += answer[a];
         if (!(norm(sum) < unequal * norm(push))) continue;
-        const std::size_t middle = (contact.begin + contact.end) / 2;
-        const Vector centres = minus(vector_at(rows, position, middle), vector_at(others, position, middle));
         const bool periodic = deck.grid.periodic[0] || deck.grid.periodic[1] || deck.grid.periodic[2];
         const bool by_centres = is_round(deck, grain) && is_round(deck, other) && !periodic;
-        return restitution(contact, approach(rows, others, unit(by_centres ? centres : push)));
+        const Vector normal = by_centres ? mean_line(rows, others, contact) : push;
+        return restitution(contact, approach(rows, others, unit(normal)));
     }
     const WallDeck* wall = wall_of(deck, push);
     return wall ? restitution(contact, approach(rows, *wall)) : none;
