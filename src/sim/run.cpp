@@ -1,12 +1,13 @@
 #include "src/sim/run.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -30,10 +31,14 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// Of this program alone; getrusage() would count that of the process which has started it, too.
 double peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;) {
+        double kilobytes = 0.0;
+        if (word == "VmHWM:" && status >> kilobytes) return 1024.0 * kilobytes;
+    }
+    return std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Rows or frames that fall due every `interval` seconds, and at the start.

@@ -92,8 +92,9 @@ std::string verdicts(const Comparison& comparison) {
     if (!comparison.over.empty())
         text += fmt::format(", at `{}`", comparison.level_name(comparison.last_level()));
     if (comparison.n_repeats == 1)
-        text +=
-            fmt::format("; times of single runs within {} % count as equal", readable(100.0 * unknown_noise));
+        text += fmt::format(
+            "; times of single runs within {} % count as equal (a busy machine needs --repeat 3 or more)",
+            readable(100.0 * unknown_noise));
     return text + ".\n\n" + list;
 }
 

@@ -96,6 +96,19 @@ TEST_CASE("Sweep: a row a run, values by name, and nothing is run twice") {
     CHECK(contains(place.table(), hash));  // friction is not met in free fall
 }
 
+TEST_CASE("Sweep: the memory of a run is its own, however large the process that starts it") {
+    const Place place;
+    const std::vector<std::string> command = {"run", place.deck, "-o", place.out, "--threads", "1"};
+    const auto peak = [&] {
+        REQUIRE(quern(place.folder, command).code == 0);
+        return RunSummary(place.out).number("peak_memory_bytes");
+    };
+    const double alone = peak();
+    const std::vector<char> ballast(300'000'000, 'x');
+    CHECK(ballast[alone > 0.0 ? 7 : 8] == 'x');
+    CHECK(peak() == doctest::Approx(alone).epsilon(0.05));  // measured 0.01, bound 0.05
+}
+
 TEST_CASE("Sweep: a run that fails is told in the table and stops no other") {
     const Place place;
     const auto command =
