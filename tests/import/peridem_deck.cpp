@@ -127,6 +127,31 @@ TEST_CASE("Imported deck: the origin of the mesh goes where PeriDEM puts it") {
     CHECK(at(deck, "constraints.0.velocity.1").text == "0");
 }
 
+TEST_CASE("Imported deck: in space, grains turned about z") {
+    const PeridemFiles files;
+    files.folder.write("first.msh", brick_mesh(2e-3, 1e-3, 4e-3, 4));
+    files.folder.write("second.msh", brick_mesh(1e-3, 1e-3, 1e-3, 4));
+    files.folder.write("wall.msh", brick_mesh(2e-2, 1e-3, 1e-2, 20));
+    files.folder.write("particles.csv",
+                       replaced(peridem_particles, "0.013, 0.006, 0.0,", "0.013, 0.006, 0.002,"));
+    const std::string solid =
+        replaced(replaced(peridem_deck, "Dimension: 2", "Dimension: 3"),
+                 "    Type: rectangle\n    Parameters: [0.0, 0.0, 0.0, 2.0e-02, 1.0e-02, 0.0]",
+                 "    Type: cuboid\n    Parameters: [0.0, 0.0, 0.0, 2.0e-02, 1.0e-02, 1.0e-02]");
+    const Node deck = files.tree(solid);
+    CHECK(at(deck, "gravity").items.size() == 3);
+    CHECK(at(deck, "constraints.0.velocity").items.size() == 3);
+    CHECK(at(deck, "grid.extent").items.size() == 3);
+    CHECK(number_at(deck, "grains.2.angle.2") == 0.5);
+    // Centre of the mesh of zone 2: 0.5 mm on each axis; the grain is 1.5 times as large.
+    const double c = std::cos(0.5), s = std::sin(0.5);
+    const double expected[] = {0.013 + 0.75e-3 * (c - s), 0.006 + 0.75e-3 * (s + c), 0.00275};
+    for (int a = 0; a < 3; ++a)  // measured 2e-18, bound 1e-16 [m]
+        CHECK(std::abs(number_at(deck, fmt::format("grains.2.position.{}", a)) - expected[a]) < 1e-16);
+    // Cells of two spacings, (1 mm^3 / 125)^(1/3) each.
+    CHECK(number_at(deck, "grid.spacing") == doctest::Approx(1.5 * 2.0 * 1e-3 / 5.0).epsilon(0.01));
+}
+
 TEST_CASE("Imported deck: many grains go to a table") {
     const PeridemFiles files;
     std::string rows = "i,x,y,z,r,o,extra\n";

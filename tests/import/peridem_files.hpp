@@ -32,6 +32,27 @@ inline std::string block_mesh(double x0, double y0, double x1, double y1, int nx
     return text + "$EndElements\n";
 }
 
+/// A box of n^3 bricks from the origin to (x, y, z).
+inline std::string brick_mesh(double x, double y, double z, int n) {
+    const auto node = [&](int i, int j, int k) { return 1 + i + (n + 1) * (j + (n + 1) * k); };
+    std::string text =
+        fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n", (n + 1) * (n + 1) * (n + 1));
+    for (int k = 0; k <= n; ++k)
+        for (int j = 0; j <= n; ++j)
+            for (int i = 0; i <= n; ++i)
+                text += fmt::format("{} {} {} {}\n", node(i, j, k), x * i / n, y * j / n, z * k / n);
+    text += fmt::format("$EndNodes\n$Elements\n{}\n", n * n * n);
+    int tag = 0;
+    for (int k = 0; k < n; ++k)
+        for (int j = 0; j < n; ++j)
+            for (int i = 0; i < n; ++i)
+                text += fmt::format("{} 5 2 1 1 {} {} {} {} {} {} {} {}\n", ++tag, node(i, j, k),
+                                    node(i + 1, j, k), node(i + 1, j + 1, k), node(i, j + 1, k),
+                                    node(i, j, k + 1), node(i + 1, j, k + 1), node(i + 1, j + 1, k + 1),
+                                    node(i, j + 1, k + 1));
+    return text + "$EndElements\n";
+}
+
 /// Two zones of grains and one wall. Lines are counted by the tests of messages.
 inline const std::string peridem_deck = R"(Model:
   Dimension: 2
