@@ -25,6 +25,7 @@ NodePairContact<Dim>::NodePairContact(const CartesianGrid<Dim>& grid, std::span<
                                       std::span<const double> volume, std::vector<PairBody> bodies,
                                       const PairLaws& laws, const NodePairOptions& options)
     : law_(grains, volume, std::move(bodies), laws, options), list_(grid, law_) {
+    if (options.damping == PairDamping::centres) centres_.emplace(grid, grains);
     std::vector<const Shape<Dim>*> shapes;
     for (const Grain<Dim>& grain : grains) {
         auto known = std::find(shapes.begin(), shapes.end(), grain.shape);
@@ -75,12 +76,18 @@ const ContactReport<Dim>& NodePairContact<Dim>::add_impulses(const ContactScene<
             std::any_of(scene.walls.begin(), scene.walls.end(),
                         [](const Wall<Dim>& wall) { return wall.friction > 0.0; });
     if (has_levers()) find_touching(scene, trial);
-    const Sums sums = parallel::sum(static_cast<std::size_t>(list_.n_rows()), Sums{}, [&](std::size_t row) {
-        return push_row(scene, trial, static_cast<int>(row));
-    });
+    sums_ = parallel::sum(static_cast<std::size_t>(list_.n_rows()), Sums{},
+                          [&](std::size_t row) { return push_row(scene, trial, static_cast<int>(row)); });
     apply(scene, trial);
-    book_losses(scene, trial, sums);
-    n_slipped_ = sums.n_slipped;
+    if (centres_) centres_->add_impulses(scene, trial, kick_time(trial), law_, list_, report_);
+    book_losses(scene, trial);
+    report_.elastic = sums_.elastic;
+    report_.elastic_work = sums_.elastic_work;
+    report_.slip_loss = sums_.slip_loss;
+    report_.stable_step = sums_.stable_step;
+    report_.n_nodes = list_.n_rows();
+    report_.n_contacts = sums_.n_contacts;
+    n_slipped_ = sums_.n_slipped;
     for (std::size_t w = 0; w < scene.walls.size(); ++w) wall_velocity_before_[w] = scene.walls[w].velocity;
     return report_;
 }
@@ -311,8 +318,7 @@ void NodePairContact<Dim>::apply(const ContactScene<Dim>& scene, const ContactTr
 
 /// What dashpots and friction without a spring took, with the velocities before and after.
 template <int Dim>
-void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial,
-                                       const Sums& sums) {
+void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {
     struct Losses {
         double normal = 0.0, friction = 0.0;
         Losses& operator+=(const Losses& other) {
@@ -338,15 +344,10 @@ void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const Con
             }
             return loss;
         });
-    report_.normal_work = losses.normal - sums.wall_dashpots;
-    report_.friction_work = losses.friction - sums.wall_friction;
-    report_.wall_work = sums.wall_work;
-    report_.elastic = sums.elastic;
-    report_.elastic_work = sums.elastic_work;
-    report_.slip_loss = sums.slip_loss;
-    report_.stable_step = sums.stable_step;
-    report_.n_nodes = list_.n_rows();
-    report_.n_contacts = sums.n_contacts;
+    report_.normal_work = losses.normal - sums_.wall_dashpots;
+    report_.friction_work = losses.friction - sums_.wall_friction;
+    report_.wall_work = sums_.wall_work;
+    if (centres_) centres_->book_losses(scene, trial, report_);
 }
 
 template class NodePairContact<2>;

@@ -32,6 +32,9 @@
 // step.
 #pragma once
 
+#include <optional>
+
+#include "contact/centre_dashpots.hpp"
 #include "contact/node_pair_list.hpp"
 #include "contact/node_patch.hpp"
 
@@ -48,6 +51,9 @@ class NodePairContact {
 
     /// Changes trial.v. The report's stable_step is that of the springs found, after a search; else infinite.
     const ContactReport<Dim>& add_impulses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
+
+    /// Books the works of the last impulses anew, where velocities have been changed once more since.
+    void book_losses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
 
     /// All broken bonds of a grain, ascending; the energy with which their springs begin [J; 2D: J/m].
     double set_broken(const ContactScene<Dim>& scene, int grain, std::vector<BrokenBond> bonds) {
@@ -104,7 +110,6 @@ class NodePairContact {
     void rub(const ContactTrial<Dim>& trial, const Surface& surface, int entry, Push& push, Sums& sums);
     void let_go(int entry, double k_t, double share, Sums& sums);
     void apply(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
-    void book_losses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, const Sums& sums);
     std::span<const int> patch_of(const ContactScene<Dim>& scene, int row) const {
         const Grain<Dim>& grain = scene.grains[list_.grain(row)];
         return patches_[patch_of_grain_[list_.grain(row)]].of(list_.particle(row) - grain.first);
@@ -114,6 +119,7 @@ class NodePairContact {
 
     NodePairLaw<Dim> law_;
     NodePairList<Dim> list_;
+    std::optional<CentreDashpots<Dim>> centres_;
     std::vector<NodePatches<Dim>> patches_;       // of each shape
     std::vector<int> patch_of_grain_;             // [n_grains] into patches_
     std::vector<Vec<Dim>> wall_velocity_before_;  // [n_walls]
@@ -127,6 +133,7 @@ class NodePairContact {
     std::vector<PatchMotion<Dim>> motion_;
     std::vector<int> wall_first_;      // [n_rows + 1] into wall_push_
     std::vector<WallPush> wall_push_;  // row after row
+    Sums sums_;
     ContactReport<Dim> report_;
 };
 

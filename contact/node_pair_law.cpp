@@ -107,6 +107,15 @@ double NodePairLaw<Dim>::published_radius(int a, int b) const {
 }
 
 template <int Dim>
+double NodePairLaw<Dim>::centre_damping(int a, int b, double mass) const {
+    const PairLaw& pair = law(a, b);
+    const double log_e = std::log(pair.restitution), K_a = bodies_[a].bulk_modulus,
+                 K_b = bodies_[b].bulk_modulus;
+    return pair.damping_factor * -2.0 * log_e / std::hypot(std::numbers::pi, log_e) *
+           std::sqrt(2.0 * K_a * K_b / (K_a + K_b) * published_radius(a, b) * mass);
+}
+
+template <int Dim>
 double NodePairLaw<Dim>::stiffness(int a, int b) const {
     const PairLaw& pair = law(a, b);
     if (pair.rule == PairStiffness::given) return pair.stiffness;
@@ -119,6 +128,7 @@ double NodePairLaw<Dim>::stiffness(int a, int b) const {
 
 template <int Dim>
 double NodePairLaw<Dim>::stable_step(int grain) const {
+    constexpr double neighbors = Dim == 2 ? 6.0 : 12.0;  // of a grain among its equals
     const Side& side = sides_[grain];
     double squared = 0.0, damped = 0.0;
     for (const Threat& other : threats_) {
@@ -141,6 +151,9 @@ double NodePairLaw<Dim>::stable_step(int grain) const {
         const double z = std::max(damping_ratio(grain, other.grain),
                                   options_.tangential_damping * std::sqrt(tangential_ratio()));
         damped = std::max(damped, 4.0 * n_springs * z * std::sqrt(one));
+        if (options_.damping == PairDamping::centres)
+            damped =
+                std::max(damped, 2.0 * neighbors * centre_damping(grain, other.grain, side.mass) / side.mass);
     }
     return step_with(grain, squared, damped);
 }

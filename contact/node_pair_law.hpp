@@ -122,6 +122,8 @@ class NodePairLaw {
         return damping_ratio_[static_cast<std::size_t>(sides_[a].material * n_materials_ +
                                                        sides_[b].material)];
     }
+    /// b of the dashpots between centres, for the mass M (centre_dashpots.hpp).
+    double centre_damping(int a, int b, double mass) const;
     /// Tangential stiffness over normal stiffness.
     double tangential_ratio() const {
         return options_.friction_law == PairFriction::history ? options_.tangential_ratio : 0.0;

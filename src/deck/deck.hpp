@@ -90,7 +90,7 @@ enum class ContactMethodKind { grid, node_pair };
 
 enum class NodePairStiffness { consistent, published };
 enum class NodePairRadius { surface, published };
-enum class NodePairDamping { none, nodes };
+enum class NodePairDamping { none, nodes, centres };
 enum class NodePairFriction { history, slip, published };
 enum class NodePairParticles { surface, all };
 
@@ -102,7 +102,8 @@ struct NodePairDeck {
     double radius_factor = 0.95;           ///< over the smallest distance of two nodes
     std::optional<double> contact_radius;  ///< R [m]; none: by the rule
     NodePairDamping damping = NodePairDamping::none;
-    double restitution = 0.9;  ///< of two nodes
+    double restitution = 0.9;       ///< of two nodes, or in the formula of the published dashpots
+    double damping_factor = 100.0;  ///< of the published dashpots
     NodePairFriction friction_law = NodePairFriction::history;
     double tangential_ratio = 0.8;    ///< tangential over normal stiffness
     double tangential_damping = 0.0;  ///< part of the critical one

@@ -161,6 +161,8 @@ Table<ContactPair> pair_table() {
         },
         [](const T& pair, int) { return pair.stiffness ? number_text(*pair.stiffness) : std::string(); });
     t.number("restitution", &T::restitution, "", fraction, "Node pairs: as contact.node_pair.restitution");
+    t.number("damping_factor", &T::damping_factor, "", not_negative,
+             "Node pairs: as contact.node_pair.damping_factor");
     t.number("contact_radius", &T::contact_radius, "m", positive,
              "Node pairs: distance at which two nodes touch");
     t.number("radius_factor", &T::radius_factor, "", positive,
@@ -168,7 +170,8 @@ Table<ContactPair> pair_table() {
     t.finish = [](T& pair, const Cursor& at, const Context&) {
         if (pair.contact_radius && pair.radius_factor)
             throw InputError(at.where(), "contact_radius and radius_factor", "one of them");
-        if (pair.friction || pair.stiffness || pair.restitution || pair.contact_radius || pair.radius_factor)
+        if (pair.friction || pair.stiffness || pair.restitution || pair.damping_factor ||
+            pair.contact_radius || pair.radius_factor)
             return;
         throw InputError(at.where(), "nothing for the pair", "friction, or another key beside between");
     };
@@ -207,8 +210,11 @@ Table<NodePairDeck> node_pair_table() {
              "As above; surface: of the spacing, for nodes on the surface itself");
     t.number("contact_radius", &T::contact_radius, "m", positive,
              "Distance at which two nodes touch, as a number");
-    t.word("damping", &T::damping, {"none", "nodes"}, "Dashpots: none, or one a pair of nodes");
-    t.number("restitution", &T::restitution, "", fraction, "Of two nodes with a dashpot");
+    t.word("damping", &T::damping, {"none", "nodes", "centres"},
+           "Dashpots: none, one a pair of nodes, or between the centres of grains as published");
+    t.number("restitution", &T::restitution, "", fraction,
+             "Of two nodes with a dashpot; centres: in their formula");
+    t.number("damping_factor", &T::damping_factor, "", not_negative, "Of the dashpots between centres");
     t.word("friction_law", &T::friction_law, {"history", "slip", "published"},
            "Tangential springs that stick; friction against the slip; with the sign of the published model");
     t.number("tangential_ratio", &T::tangential_ratio, "", {0.0, 1.0, true, false, false},

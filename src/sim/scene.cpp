@@ -55,7 +55,9 @@ NodePairOptions node_pair_options(const NodePairDeck& deck) {
     NodePairOptions options;
     options.radius = deck.radius == NodePairRadius::published ? PairRadius::published : PairRadius::surface;
     options.radius_factor = deck.radius_factor;
-    options.damping = deck.damping == NodePairDamping::nodes ? PairDamping::nodes : PairDamping::none;
+    options.damping = deck.damping == NodePairDamping::nodes     ? PairDamping::nodes
+                      : deck.damping == NodePairDamping::centres ? PairDamping::centres
+                                                                 : PairDamping::none;
     options.friction_law = deck.friction_law == NodePairFriction::history ? PairFriction::history
                            : deck.friction_law == NodePairFriction::slip  ? PairFriction::slip
                                                                           : PairFriction::published;
@@ -224,6 +226,7 @@ PairLaws pair_laws(const Deck& deck) {
     all.stiffness = from.stiffness.value_or(0.0);
     all.radius = from.contact_radius.value_or(0.0);
     all.restitution = from.restitution;
+    all.damping_factor = from.damping_factor;
     PairLaws laws(static_cast<int>(deck.materials.size()), all);
     for (const ContactPair& pair : deck.contact.pairs) {
         PairLaw law = all;
@@ -237,6 +240,7 @@ PairLaws pair_laws(const Deck& deck) {
             law.radius_factor = *pair.radius_factor;
         }
         if (pair.restitution) law.restitution = *pair.restitution;
+        if (pair.damping_factor) law.damping_factor = *pair.damping_factor;
         laws.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second), law);
     }
     return laws;

@@ -93,10 +93,12 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
 }
 
 /// Prescribed velocities; the impulse that they take is external. Before contact its work is taken with the
-/// prescribed velocity, which is the final one; what undoes contact, with the velocity that contact had left:
-/// so the works of both sum to the change of kinetic energy.
+/// prescribed velocity, which is the final one; what undoes contact on the grid, with the velocity that
+/// contact had left: so the works of both sum to the change of kinetic energy. Springs between nodes are
+/// forces like those inside grains: their works are taken with the final velocities.
 template <int Dim>
 void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_contact) {
+    const bool springs = scene.contact && std::holds_alternative<NodePairContact<Dim>>(*scene.contact);
     for (const Constraint<Dim>& constraint : scene.constraints)
         for (const int p : constraint.particles) {
             Vec<Dim> v = scene.particles.v[p];
@@ -104,7 +106,7 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
                 if (constraint.velocity[k])
                     v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
             const Vec<Dim> dp = scene.particles.mass[p] * (v - scene.particles.v[p]);
-            const Vec<Dim> v_work = after_contact ? scene.particles.v[p] : v;
+            const Vec<Dim> v_work = after_contact && !springs ? scene.particles.v[p] : v;
             now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
             scene.particles.v[p] = v;
             now.largest_speed = std::max(now.largest_speed, v.norm());
@@ -150,6 +152,9 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     const ContactReport<Dim>& report = std::visit(
         [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
         *scene.contact);
+    apply_constraints(scene, now, true);
+    if (auto* pairs = std::get_if<NodePairContact<Dim>>(&*scene.contact); pairs && !scene.constraints.empty())
+        pairs->book_losses(view, trial);
     typename Ledger<Dim>::Entry& entry = now.ledger.now;
     now.ledger.contact_elastic = report.elastic;
     now.ledger.kinetic += now.part_done() * report.elastic_work;
@@ -252,7 +257,6 @@ void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
         add_contact(scene, now);
     }
     const StageTimer timer(now.stages.kick);
-    if (scene.contact) apply_constraints(scene, now, true);
     close_ledger(scene, now, dt);
 }
 
