@@ -186,9 +186,10 @@ class PeridemFiles {
         folder.write("input_0.yaml", text);
         return import_peridem({input, output.string(), horizon, force});
     }
-    /// The deck made of a PeriDEM deck.
+    /// The deck made of a PeriDEM deck; it is one that `quern check` accepts.
     Node tree(const std::string& text, ImportedHorizon horizon = ImportedHorizon::absolute) const {
         import(text, horizon);
+        CHECK_NOTHROW(read_deck(output.string()));
         return read_tree(output.string());
     }
     std::string text() const {

@@ -52,12 +52,6 @@ double misplacement(const Scene<2>& scene, int id, const fs::path& mesh, const V
     return error;
 }
 
-std::string undamped(std::string text) {
-    for (std::size_t at = 0; (at = text.find("    Friction_On:", at)) != std::string::npos; at += 40)
-        text.insert(at, "    Damping_On: false\n");
-    return text;
-}
-
 }  // namespace
 
 TEST_CASE("Published deck: two disks") {
@@ -65,24 +59,22 @@ TEST_CASE("Published deck: two disks") {
     const std::string text = contents(published / "circ_damp.yaml");
     for (const char* file : {"mesh_cir_1_0.msh", "mesh_cir_2_0.msh", "particle_locations_0.csv"})
         folder.write(file, contents(published / file));
-    const std::string deck_file = folder.write("damped.yaml", "") + ".new";
+    const std::string deck_file = folder.write("deck.yaml", "") + ".new";
     const ImportReport report =
         import_peridem({folder.write("input_0.yaml", text), deck_file, ImportedHorizon::absolute, false});
     CHECK(report.n_bodies == 2);
     CHECK(report.differs.empty());
-    const Node damped = read_tree(deck_file);
-    CHECK(number_at(damped, "contact.node_pair.restitution") == 0.9);
-    CHECK(number_at(damped, "contact.node_pair.damping_factor") == 100.0);
-    CHECK(number_at(damped, "contact.node_pair.stiffness") == 1.591549e24);
-
-    import_peridem(
-        {folder.write("input_0.yaml", undamped(text)), deck_file, ImportedHorizon::absolute, true});
     const Deck deck = read_deck(deck_file);
+    CHECK(deck.contact.method == ContactMethodKind::node_pair);
+    CHECK(deck.contact.node_pair.damping == NodePairDamping::centres);
+    CHECK(deck.contact.node_pair.restitution == 0.9);
+    CHECK(deck.contact.node_pair.damping_factor == 100.0);
+    CHECK(deck.contact.node_pair.stiffness == 1.591549e24);
     CHECK(deck.time.step == doctest::Approx(2e-7).epsilon(1e-15));
     CHECK(deck.materials.size() == 1);
     const auto scene = make_scene<2>(deck);
     CHECK(misplacement(*scene, 0, published / "mesh_cir_1_0.msh", {1e-3, 1e-3}, 1.0, 0.0) < 1e-17);
-    // measured 9e-19, bound 1e-17 [m]
+    // measured 4.5e-19, bound 1e-17 [m]
     CHECK(misplacement(*scene, 1, published / "mesh_cir_2_0.msh", {1e-3, 3.6e-3}, 1.0, 1.570796) < 1e-17);
     set_initial_velocities(deck, *scene);
     CHECK(scene->particles.v[scene->grains[1].first][1] == -8.944272e-2);
@@ -103,7 +95,7 @@ TEST_CASE("Published deck: compression, with its walls and sizes") {
                  "1, 0.065125, 0.004202, 0.000000, 0.000902, 0.231303\n"
                  "0, 0.062931, 0.001243, 0.000000, 0.000943, 4.178628\n"
                  "1, 0.060731, 0.001253, 0.000000, 0.000949, 5.000000\n");
-    const std::string text = undamped(contents(published / "compression_502.yaml"));
+    const std::string text = contents(published / "compression_502.yaml");
     const std::string deck_file = folder.write("deck.yaml", "") + ".new";
     const ImportReport report =
         import_peridem({folder.write("input_0.yaml", text), deck_file, ImportedHorizon::absolute, false});
@@ -127,7 +119,7 @@ TEST_CASE("Published deck: compression, with its walls and sizes") {
         misplacement(*scene, 0, compression / "circle.msh", {0.067190, 0.001249}, 0.949, 2.414390),
         misplacement(*scene, 1, compression / "circle.msh", {0.062931, 0.001243}, 0.943, 4.178628),
         misplacement(*scene, 3, compression / "hexagon.msh", {0.060731, 0.001253}, 0.949, 5.0)};
-    for (const double error : errors) CHECK(error < 1e-16);  // measured 2e-17, bound 1e-16 [m]
+    for (const double error : errors) CHECK(error < 1e-16);  // measured 1.4e-17, bound 1e-16 [m]
 
     // One shape a zone, scaled: the same places.
     import_peridem({folder.write("input_0.yaml", text), deck_file, ImportedHorizon::scaled, true});
