@@ -15,7 +15,7 @@ typename NodePairContact<Dim>::Sums& NodePairContact<Dim>::Sums::operator+=(cons
     wall_dashpots += other.wall_dashpots;
     wall_friction += other.wall_friction;
     stable_step = std::min(stable_step, other.stable_step);
-    n_contacts += other.n_contacts;
+    n_ends += other.n_ends;
     n_slipped += other.n_slipped;
     return *this;
 }
@@ -76,8 +76,8 @@ const ContactReport<Dim>& NodePairContact<Dim>::add_impulses(const ContactScene<
             std::any_of(scene.walls.begin(), scene.walls.end(),
                         [](const Wall<Dim>& wall) { return wall.friction > 0.0; });
     if (has_levers()) find_touching(scene, trial);
-    sums_ = parallel::sum(static_cast<std::size_t>(list_.n_rows()), Sums{},
-                          [&](std::size_t row) { return push_row(scene, trial, static_cast<int>(row)); });
+    sums_ = parallel::sum(list_.listed().size(), Sums{},
+                          [&](std::size_t i) { return push_row(scene, trial, list_.listed()[i]); });
     apply(scene, trial);
     if (centres_) centres_->add_impulses(scene, trial, kick_time(trial), law_, list_, report_);
     book_losses(scene, trial);
@@ -86,7 +86,7 @@ const ContactReport<Dim>& NodePairContact<Dim>::add_impulses(const ContactScene<
     report_.slip_loss = sums_.slip_loss;
     report_.stable_step = sums_.stable_step;
     report_.n_nodes = list_.n_rows();
-    report_.n_contacts = sums_.n_contacts;
+    report_.n_contacts = sums_.n_ends / 2;
     n_slipped_ = sums_.n_slipped;
     for (std::size_t w = 0; w < scene.walls.size(); ++w) wall_velocity_before_[w] = scene.walls[w].velocity;
     return report_;
@@ -96,9 +96,9 @@ const ContactReport<Dim>& NodePairContact<Dim>::add_impulses(const ContactScene<
 template <int Dim>
 void NodePairContact<Dim>::find_touching(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {
     parallel::for_each(
-        static_cast<std::size_t>(list_.n_rows()),
+        list_.listed().size(),
         [&](std::size_t i) {
-            const int row = static_cast<int>(i), p = list_.particle(row);
+            const int row = list_.listed()[i], p = list_.particle(row);
             const std::pair<int, int> entries = list_.entries_of(row);
             int n = 0;
             for (int e = entries.first; e < entries.second; ++e) {
@@ -107,11 +107,11 @@ void NodePairContact<Dim>::find_touching(const ContactScene<Dim>& scene, const C
                 n += q < 0 ? 2.0 * scene.walls[-1 - q].distance(scene.x[p]) < R
                            : list_.nearest()(scene.x[p], scene.x[q]).squaredNorm() < R * R;
             }
-            n_touching_[i] = n;
+            n_touching_[row] = n;
             if (n == 0) return;
             const Grain<Dim>& grain = scene.grains[list_.grain(row)];
-            motion_[i] = patch_motion<Dim>(grain, patch_of(scene, row), p - grain.first, scene.x,
-                                           trial.v_before, scene.mass);
+            motion_[row] = patch_motion<Dim>(grain, patch_of(scene, row), p - grain.first, scene.x,
+                                             trial.v_before, scene.mass);
         },
         256);
 }
@@ -122,7 +122,6 @@ typename NodePairContact<Dim>::Sums NodePairContact<Dim>::push_row(const Contact
     Sums sums;
     const std::pair<int, int> entries = list_.entries_of(row);
     active_[row] = 0;
-    if (entries.first == entries.second) return sums;
     const int p = list_.particle(row), n_walls = wall_first_[row + 1] - wall_first_[row];
     push_[row] = {};
     double squared = 0.0, damped = 0.0;
@@ -165,7 +164,7 @@ void NodePairContact<Dim>::push_from_wall(const ContactScene<Dim>& scene, const 
         return;
     }
     active_[row] = 1;
-    ++sums.n_contacts;
+    sums.n_ends += 2;
     const double kick = kick_time(trial);
     const Vec<Dim>& n = wall.normal;
     const Vec<Dim> v = trial.v_before[p] - wall_velocity_before_[w];
@@ -211,7 +210,7 @@ void NodePairContact<Dim>::push_from_node(const ContactScene<Dim>& scene, const 
     const int p = list_.particle(row), q = list_.partner(touch.entry);
     const int other = list_.row_of(q), g = list_.grain(row), h = list_.grain(other);
     active_[row] = 1;
-    ++sums.n_contacts;
+    ++sums.n_ends;
     const double kick = kick_time(trial), k = list_.stiffness(touch.entry);
     const double over = list_.radius(touch.entry) - touch.d;
     const double m = scene.mass[p], m_other = scene.mass[q], reduced = m * m_other / (m + m_other);
@@ -297,8 +296,9 @@ void NodePairContact<Dim>::apply(const ContactScene<Dim>& scene, const ContactTr
         scene.grains.size(),
         [&](std::size_t g) {
             const Grain<Dim>& grain = scene.grains[g];
-            const std::pair<int, int> rows = list_.rows_of(static_cast<int>(g));
-            for (int row = rows.first; row < rows.second; ++row) {
+            const std::pair<int, int> rows = list_.listed_of(static_cast<int>(g));
+            for (int k = rows.first; k < rows.second; ++k) {
+                const int row = list_.listed()[k];
                 if (!active_[row]) continue;
                 const int p = list_.particle(row);
                 const Push& push = push_[row];
@@ -327,23 +327,22 @@ void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const Con
             return *this;
         }
     };
-    const Losses losses =
-        parallel::sum(static_cast<std::size_t>(list_.n_rows()), Losses{}, [&](std::size_t i) {
-            Losses loss;
-            if (!active_[i]) return loss;
-            const Push& push = push_[i];
-            const int row = static_cast<int>(i), p = list_.particle(row);
-            const Vec<Dim> twice = trial.v_before[p] + trial.v[p];
-            loss.normal = 0.5 * push.dashpots.dot(twice);
-            loss.friction = 0.5 * push.friction.dot(twice);
-            if (!push.lossy_moment.isZero(0.0)) {
-                const Grain<Dim>& grain = scene.grains[list_.grain(row)];
-                const Spin<Dim> after = patch_spin<Dim>(motion_[i], grain, patch_of(scene, row),
-                                                        p - grain.first, scene.x, trial.v, scene.mass);
-                loss.friction += 0.5 * push.lossy_moment.dot(motion_[i].omega + after);
-            }
-            return loss;
-        });
+    const Losses losses = parallel::sum(list_.listed().size(), Losses{}, [&](std::size_t i) {
+        Losses loss;
+        const int row = list_.listed()[i], p = list_.particle(row);
+        if (!active_[row]) return loss;
+        const Push& push = push_[row];
+        const Vec<Dim> twice = trial.v_before[p] + trial.v[p];
+        loss.normal = 0.5 * push.dashpots.dot(twice);
+        loss.friction = 0.5 * push.friction.dot(twice);
+        if (!push.lossy_moment.isZero(0.0)) {
+            const Grain<Dim>& grain = scene.grains[list_.grain(row)];
+            const Spin<Dim> after = patch_spin<Dim>(motion_[row], grain, patch_of(scene, row),
+                                                    p - grain.first, scene.x, trial.v, scene.mass);
+            loss.friction += 0.5 * push.lossy_moment.dot(motion_[row].omega + after);
+        }
+        return loss;
+    });
     report_.normal_work = losses.normal - sums_.wall_dashpots;
     report_.friction_work = losses.friction - sums_.wall_friction;
     report_.wall_work = sums_.wall_work;

@@ -82,8 +82,8 @@ class NodePairContact {
         double wall_work = 0.0, wall_dashpots = 0.0,
                wall_friction = 0.0;  ///< on the particles, by what walls do
         double stable_step = std::numeric_limits<double>::infinity();
-        std::int64_t n_contacts = 0;  ///< those of two nodes count twice
-        std::int64_t n_slipped = 0;   ///< tangential springs that hold something
+        std::int64_t n_ends = 0;     ///< of contacts, two each
+        std::int64_t n_slipped = 0;  ///< tangential springs that hold something
         Sums& operator+=(const Sums& other);
     };
     /// One contact of a row's node.

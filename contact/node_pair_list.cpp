@@ -114,6 +114,13 @@ void NodePairList<Dim>::search(const ContactScene<Dim>& scene) {
     first_.assign(1, 0);
     for (const Block& block : blocks_)
         for (const int count : block.count) first_.push_back(first_.back() + count);
+    listed_.clear();
+    grain_listed_.assign(1, 0);
+    for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+        for (int row = grain_rows_[g]; row < grain_rows_[g + 1]; ++row)
+            if (first_[row] < first_[row + 1]) listed_.push_back(row);
+        grain_listed_.push_back(static_cast<int>(listed_.size()));
+    }
     const std::size_t n = static_cast<std::size_t>(first_.back());
     partner_.resize(n);
     radius_.resize(n);

@@ -47,6 +47,11 @@ class NodePairList {
     int particle(int row) const { return particle_[row]; }
     int grain(int row) const { return grain_[row]; }
     int row_of(int particle) const { return row_of_[particle]; }
+    /// Rows that have entries, ascending; those of a grain are [first, last) of them.
+    const std::vector<int>& listed() const { return listed_; }
+    std::pair<int, int> listed_of(int grain) const {
+        return {grain_listed_[grain], grain_listed_[grain + 1]};
+    }
     /// Rows of a grain are [first, last).
     std::pair<int, int> rows_of(int grain) const { return {grain_rows_[grain], grain_rows_[grain + 1]}; }
     /// Entries of a row are [first, last): walls first.
@@ -98,7 +103,8 @@ class NodePairList {
     std::vector<Vec<Dim>> wall_x_;       // [n_walls]
     std::vector<int> particle_, grain_;  // [n_rows]
     std::vector<int> grain_rows_;        // [n_grains + 1]
-    std::vector<int> row_of_;            // [n] or -1
+    std::vector<int> listed_, grain_listed_;
+    std::vector<int> row_of_;  // [n] or -1
     std::vector<int> first_, partner_;
     std::vector<double> radius_, stiffness_;
     std::vector<Vec<Dim>> slip_;  // empty without history
