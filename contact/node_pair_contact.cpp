@@ -286,6 +286,7 @@ template <int Dim>
 void NodePairContact<Dim>::let_go(int entry, double k_t, double share, Sums& sums) {
     if (!rubs_ || !list_.keeps_slip()) return;
     Vec<Dim>& slip = list_.slip(entry);
+    if (slip.isZero(0.0)) return;
     sums.slip_loss += share * 0.5 * k_t * slip.squaredNorm();
     slip.setZero();
 }

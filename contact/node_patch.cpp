@@ -48,27 +48,30 @@ PatchMotion<Dim> patch_motion(const Grain<Dim>& grain, std::span<const int> patc
                               std::span<const Vec<Dim>> x, std::span<const Vec<Dim>> v,
                               std::span<const double> mass) {
     PatchMotion<Dim> motion;
-    const Vec<Dim> middle = x[grain.first + node];
+    const Vec<Dim> middle = x[grain.first + node], v_middle = v[grain.first + node];
     double total = 0.0;
     int n_members = 0;
+    Vec<Dim> first = Vec<Dim>::Zero(), momentum = Vec<Dim>::Zero();
+    Mat<Dim> second = Mat<Dim>::Zero();
+    Spin<Dim> L = Spin<Dim>::Zero();
+    // All about the node, one pass: nearby numbers lose nothing in what is taken off below.
     for (const int k : patch) {
         const int p = grain.first + k;
         if (!belongs(grain, middle, x[p])) continue;
+        const Vec<Dim> r = x[p] - middle, mr = mass[p] * r, u = v[p] - v_middle;
         total += mass[p];
-        motion.centre += mass[p] * (x[p] - middle);
+        first += mr;
+        momentum += mass[p] * u;
+        second += mr * r.transpose();
+        L += moment(mr, u);
         ++n_members;
     }
-    motion.centre = middle + motion.centre / total;
+    const Vec<Dim> offset = first / total;
+    motion.centre = middle + offset;
     if (n_members < 2) return motion;
-    Mat<Dim> second = Mat<Dim>::Zero();
-    for (const int k : patch) {
-        const int p = grain.first + k;
-        if (!belongs(grain, middle, x[p])) continue;
-        const Vec<Dim> r = x[p] - motion.centre;
-        second += mass[p] * r * r.transpose();
-    }
+    second -= offset * first.transpose();
     motion.inverse = inverse_inertia(second);
-    motion.omega = patch_spin<Dim>(motion, grain, patch, node, x, v, mass);
+    motion.omega = motion.inverse * (L - moment(offset, momentum));
     return motion;
 }
 
