@@ -137,8 +137,9 @@ typename NodePairContact<Dim>::Sums NodePairContact<Dim>::push_row(const Contact
         else
             let_go(e, law_.tangential_ratio() * list_.stiffness(e), 0.5, sums);
     }
-    // By where the partners are, not by their numbers; two terms add up to the same bits in any order.
-    if (touching.size() > 2)
+    // By where the partners are, not by their numbers. Two terms already: a fused product and sum is rounded
+    // once.
+    if (touching.size() > 1)
         std::sort(touching.begin(), touching.end(), [](const Touch& a, const Touch& b) {
             if (a.d != b.d) return a.d < b.d;
             return std::lexicographical_compare(a.r.data(), a.r.data() + Dim, b.r.data(), b.r.data() + Dim);

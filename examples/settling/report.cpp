@@ -98,7 +98,8 @@ Settling settle(const Case& c, const std::string& directory) {
     Settling s;
     s.time = column(record.history, [](const HistoryRow& row) { return row.time; });
     s.kinetic = energy([](const EnergyBudget& e) { return e.kinetic; });
-    s.mechanical = energy([](const EnergyBudget& e) { return e.kinetic + e.elastic + e.gravity; });
+    s.mechanical =
+        energy([](const EnergyBudget& e) { return e.kinetic + e.elastic + e.contact_elastic + e.gravity; });
     s.rise = sum_of_rises(s.mechanical);
     s.rest = s.kinetic.back() / *std::max_element(s.kinetic.begin(), s.kinetic.end());
     const double lost = s.mechanical.front() - s.mechanical.back(), last = s.mechanical.back();

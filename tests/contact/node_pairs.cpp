@@ -170,7 +170,9 @@ TEST_CASE("NodePair: the order of the grains does not matter") {
             };
             World<Dim> forth = make({0, 1, 2}), back = make({2, 0, 1});
             const std::vector<Vec<Dim>> v = forth.particles.v;
-            NodePairs<Dim> a(forth, options, dashed()), b(back, options, dashed());
+            PairLaw wide = dashed();  // nodes with many partners, of both grains
+            wide.radius = 2.5 * filling.shape.dx;
+            NodePairs<Dim> a(forth, options, wide), b(back, options, wide);
             for (int step = 0; step < 3; ++step) {
                 a.step(step == 0);
                 b.step(step == 0);
