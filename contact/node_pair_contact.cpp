@@ -351,6 +351,21 @@ void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const Con
     if (centres_) centres_->book_losses(scene, trial, report_);
 }
 
+template <int Dim>
+PairMemory<Dim> NodePairContact<Dim>::memory() const {
+    PairMemory<Dim> memory;
+    list_.save(memory);
+    memory.wall_velocity = wall_velocity_before_;
+    return memory;
+}
+
+template <int Dim>
+void NodePairContact<Dim>::recall(const PairMemory<Dim>& memory, std::size_t n_particles) {
+    list_.recall(memory, n_particles);
+    wall_velocity_before_ = memory.wall_velocity;
+    n_slipped_ = static_cast<std::int64_t>(memory.slip.size());
+}
+
 template class NodePairContact<2>;
 template class NodePairContact<3>;
 

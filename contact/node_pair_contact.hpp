@@ -59,6 +59,9 @@ class NodePairContact {
     double set_broken(const ContactScene<Dim>& scene, int grain, std::vector<BrokenBond> bonds) {
         return list_.set_broken(scene, grain, std::move(bonds));
     }
+    /// For checkpoints: a contact that recalls the memory of another goes on as that one would.
+    PairMemory<Dim> memory() const;
+    void recall(const PairMemory<Dim>& memory, std::size_t n_particles);
     bool self_contact() const { return law_.options().self_contact; }
     /// Largest stable step [s] of all grains, before any contact is known.
     double stable_step() const;

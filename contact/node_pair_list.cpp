@@ -220,6 +220,34 @@ double NodePairList<Dim>::set_broken(const ContactScene<Dim>& scene, int g, std:
     return energy;
 }
 
+template <int Dim>
+void NodePairList<Dim>::save(PairMemory<Dim>& memory) const {
+    for (int row = 0; row < n_rows() && keeps_slip(); ++row)
+        for (int e = first_[row]; e < first_[row + 1]; ++e)
+            if (!slip_[e].isZero(0.0)) {
+                memory.particle.push_back(particle_[row]);
+                memory.partner.push_back(partner_[e]);
+                memory.slip.push_back(slip_[e]);
+            }
+}
+
+template <int Dim>
+void NodePairList<Dim>::recall(const PairMemory<Dim>& memory, std::size_t n_particles) {
+    searched_ = false;
+    row_of_.assign(n_particles, -1);
+    first_.assign(1, 0);
+    partner_.assign(memory.partner.begin(), memory.partner.end());
+    slip_ = memory.slip;
+    for (std::size_t k = 0; k < memory.particle.size(); ++k) {
+        int& row = row_of_[static_cast<std::size_t>(memory.particle[k])];
+        if (row < 0) {
+            row = static_cast<int>(first_.size()) - 1;
+            first_.push_back(first_.back());
+        }
+        ++first_.back();
+    }
+}
+
 template class NodePairList<2>;
 template class NodePairList<3>;
 

@@ -31,6 +31,14 @@ struct BrokenBond {
     auto operator<=>(const BrokenBond&) const = default;
 };
 
+/// What contact between nodes knows beside positions and velocities.
+template <int Dim>
+struct PairMemory {
+    std::vector<std::int64_t> particle, partner;  ///< of tangential springs that hold something
+    std::vector<Vec<Dim>> slip;                   ///< their displacements [m]
+    std::vector<Vec<Dim>> wall_velocity;          ///< [n_walls] of the step before [m/s]
+};
+
 template <int Dim>
 class NodePairList {
   public:
@@ -42,6 +50,10 @@ class NodePairList {
     /// All broken bonds of a grain, ascending. Energy [J; 2D: J/m] of the springs that begin where nodes are
     /// already nearer than R.
     double set_broken(const ContactScene<Dim>& scene, int grain, std::vector<BrokenBond> bonds);
+
+    /// Fills all but wall_velocity; `recall` gives it to the next search, which must be the first thing then.
+    void save(PairMemory<Dim>& memory) const;
+    void recall(const PairMemory<Dim>& memory, std::size_t n_particles);
 
     int n_rows() const { return static_cast<int>(particle_.size()); }
     int particle(int row) const { return particle_[row]; }

@@ -21,6 +21,28 @@ void pass_ledger(Checkpoint& checkpoint, Ledger<Dim>& ledger) {
     checkpoint.value("ledger moment", past.moment);
 }
 
+template <int Dim>
+void pass_contact(Checkpoint& checkpoint, Scene<Dim>& scene) {
+    auto* pairs = scene.contact ? std::get_if<NodePairContact<Dim>>(&*scene.contact) : nullptr;
+    if (pairs == nullptr) return;
+    PairMemory<Dim> memory;
+    if (!checkpoint.loading()) memory = pairs->memory();
+    checkpoint.vector("slip of", memory.particle);
+    checkpoint.vector("slip against", memory.partner);
+    checkpoint.vector("slip", memory.slip);
+    checkpoint.vector("wall velocity before", memory.wall_velocity);
+    if (!checkpoint.loading()) return;
+    pairs->recall(memory, scene.particles.x.size());
+    const ContactScene<Dim> view{scene.grains,           scene.particles.x, scene.particles.mass,
+                                 scene.particles.volume, scene.walls,       &scene.friction,
+                                 scene.travelled};
+    for (std::size_t g = 0; g < scene.torn.size(); ++g) {
+        const int grain = static_cast<int>(g);
+        std::vector<BrokenBond> broken = scene.broken_bonds(grain);
+        if (!broken.empty()) pairs->set_broken(view, grain, std::move(broken));
+    }
+}
+
 }  // namespace
 
 template <int Dim>
@@ -37,6 +59,7 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
         checkpoint.value("wall velocity", wall.velocity);
     }
     checkpoint.value("travelled", scene.travelled);
+    pass_contact(checkpoint, scene);
     pass_ledger(checkpoint, now.ledger);
     checkpoint.array("grain impulse", std::span(now.grain_impulse));
     checkpoint.array("wall impulse", std::span(now.wall_impulse));

@@ -360,6 +360,21 @@ const MaterialGroup<Dim>& Scene<Dim>::group_of(int grain) const {
 }
 
 template <int Dim>
+std::vector<BrokenBond> Scene<Dim>::broken_bonds(int grain) const {
+    const BondBits intact = view(grain).alive;
+    std::vector<BrokenBond> broken;
+    std::visit(
+        [&](const auto& model) {
+            const Bonds<Dim>& bonds = model.bonds();
+            for (int i = 0; i < bonds.n_nodes() && !intact.empty(); ++i)
+                for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
+                    if (!intact[b]) broken.push_back({i, bonds.partner[b]});
+        },
+        group_of(grain).model);
+    return broken;
+}
+
+template <int Dim>
 double Scene<Dim>::elastic_energy() const {
     double energy = 0.0;
     for (const MaterialGroup<Dim>& group : groups)

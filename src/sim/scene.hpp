@@ -100,9 +100,10 @@ struct Scene {
     GrainView<Dim> view(int grain) const;
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     const MaterialGroup<Dim>& group_of(int grain) const;
-    bool moves_with_grid() const;   ///< positions move with StepArrays::drift
-    double elastic_energy() const;  ///< [J; 2D: J/m]
-    double stable_step() const;     ///< largest stable time step, damping and contact included [s]
+    std::vector<BrokenBond> broken_bonds(int grain) const;  ///< ascending
+    bool moves_with_grid() const;                           ///< positions move with StepArrays::drift
+    double elastic_energy() const;                          ///< [J; 2D: J/m]
+    double stable_step() const;  ///< largest stable time step, damping and contact included [s]
 };
 
 /// Builds the scene of a deck. Throws InputError (grain outside the grid, grains overlapping, material or

@@ -122,19 +122,9 @@ void hand_over_broken_bonds(Scene<Dim>& scene, const ContactScene<Dim>& view, St
         if (!scene.torn[g]) continue;
         scene.torn[g] = 0;
         const int grain = static_cast<int>(g);
-        const BondBits alive = scene.view(grain).alive;
-        std::vector<BrokenBond> broken;
-        std::visit(
-            [&](const auto& model) {
-                const Bonds<Dim>& bonds = model.bonds();
-                for (int i = 0; i < bonds.n_nodes(); ++i)
-                    for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
-                        if (!alive[b]) broken.push_back({i, bonds.partner[b]});
-            },
-            scene.group_of(grain).model);
         // What the springs of a new crack begin with comes from what its bonds have set free.
         now.ledger.past.fracture -=
-            std::get<NodePairContact<Dim>>(*scene.contact).set_broken(view, grain, std::move(broken));
+            std::get<NodePairContact<Dim>>(*scene.contact).set_broken(view, grain, scene.broken_bonds(grain));
     }
 }
 

@@ -88,6 +88,14 @@ TEST_CASE("Resume: killed runs end with the same bits and files, breaking grains
     check_killed({unequal_deck, often, 2}, SIGKILL, {10, 45});
 }
 
+TEST_CASE("Resume: contact between nodes, sticking, slipping and through cracks") {
+    std::vector<std::string> pairs = often;
+    pairs.emplace_back("contact.method=node_pair");
+    check_killed({unequal_deck, pairs, 1}, SIGKILL, {0, 60, 30});
+    check_killed({unequal_deck, pairs, 2}, SIGKILL, {45});
+    check_killed({flip, {"contact.method=node_pair", "time.end=0.5"}, 1}, SIGKILL, {3, 20});
+}
+
 TEST_CASE("Resume: in space, through the grid, with moving walls") {
     check_killed({flip, {}, 1}, SIGKILL, {3, 20});
 }
