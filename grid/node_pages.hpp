@@ -1,7 +1,7 @@
 // One value per grid node, stored only where something is: a directory of small pages.
 //
 // Memory follows the matter, not the box: a page of 16^2 or 8^3 nodes is made when first asked for. Pages
-// have colours: nodes of two pages of one colour share no cell.
+// have colours: two pages of one colour are half a page apart or more.
 #pragma once
 
 #include <array>
@@ -24,6 +24,7 @@ class NodePages {
         for (int a = 0; a < Dim; ++a) {
             n_pages_[a] = (grid.n_nodes()[a] + side - 1) >> shift;
             periodic_[a] = grid.periodic(a);
+            narrow_[a] = periodic_[a] && grid.n_nodes()[a] - ((n_pages_[a] - 1) << shift) < side / 2;
             n *= static_cast<std::size_t>(n_pages_[a]);
         }
         directory_.assign(n, -1);
@@ -76,12 +77,15 @@ class NodePages {
     /// Where a page stands in the grid: pages in ascending order are independent of how they were made.
     std::size_t place(int page) const { return directory_index(first_[page]); }
 
-    /// Two values an axis; three where a periodic axis has an odd number of pages.
+    /// Two values an axis; three where a periodic axis has an odd number of pages, or an even one of which
+    /// the last is too narrow to part its neighbours.
     int colour(int page) const {
         int c = 0;
         for (int a = Dim - 1; a >= 0; --a) {
             const int i = first_[page][a] >> shift;
-            const bool seam = periodic_[a] && n_pages_[a] % 2 == 1 && i == n_pages_[a] - 1;
+            const bool odd = n_pages_[a] % 2 == 1;
+            const bool seam =
+                (periodic_[a] && odd && i == n_pages_[a] - 1) || (narrow_[a] && !odd && i == n_pages_[a] - 2);
             c = 3 * c + (seam ? 2 : i % 2);
         }
         return c;
@@ -98,7 +102,7 @@ class NodePages {
 
     T empty_;
     IntVec<Dim> n_pages_;
-    std::array<bool, Dim> periodic_;
+    std::array<bool, Dim> periodic_, narrow_;  ///< narrow: the last page is less than half a page
     std::vector<std::int32_t> directory_;
     std::vector<IntVec<Dim>> first_;
     std::vector<T> values_;

@@ -48,7 +48,7 @@ void check_pages() {
     CHECK(pages[node(5)] == -7);
 }
 
-/// Pages of one colour that hold nodes which share a cell.
+/// Pages of one colour that hold nodes less than half a page apart.
 template <int Dim>
 int clashes(int n_cells, bool periodic) {
     std::array<bool, Dim> axes{};
@@ -72,9 +72,10 @@ int clashes(int n_cells, bool periodic) {
         for (int& value : pages.values(page)) value = page;
     int found = 0;
     for_each_node([&](const IntVec<Dim>& node) {
-        for (int k = 0; k < power(3, Dim); ++k) {
+        constexpr int near = pages.side / 2 - 1, around = 2 * near + 1;
+        for (int k = 0; k < power(around, Dim); ++k) {
             IntVec<Dim> other = node;
-            for (int a = 0, rest = k; a < Dim; ++a, rest /= 3) other[a] += rest % 3 - 1;
+            for (int a = 0, rest = k; a < Dim; ++a, rest /= around) other[a] += rest % around - near;
             other = wrapped(other);
             if ((other.array() < 0).any() || (other.array() >= n).any()) continue;
             const int a = pages[node], b = pages[other];
@@ -98,7 +99,7 @@ TEST_CASE("NodePages: every node has a value of its own") {
     check_pages<3>();
 }
 
-TEST_CASE("NodePages: pages of one colour share no cell") {
+TEST_CASE("NodePages: pages of one colour are half a page apart") {
     for (const bool periodic : {false, true})
         for (const int n : {9, 17, 26, 33, 48, 49, 65, 81}) {
             CAPTURE(periodic);
