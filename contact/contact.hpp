@@ -89,13 +89,14 @@ struct ContactReport {
     bool converged = true;
 };
 
-enum class GridRule { pair, seed };
+enum class GridRule { pair, surface, seed };
 enum class GridCoupling { impulse, flip };
 
 /// Grid contact. The switches turn single ingredients of the pair rule off, to show what each is for.
 struct GridContactOptions {
     GridRule rule = GridRule::pair;
     GridCoupling coupling = GridCoupling::impulse;
+    bool exact_walls = false;      ///< walls meet surface particles; false: tiles, one a node
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n

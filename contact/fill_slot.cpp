@@ -10,24 +10,8 @@ namespace quern {
 
 namespace {
 
-/// Below this smallest moment of inertia [m h^2] a slot is a point or a line and does not turn.
+/// Below this least moment of inertia [m length^2] particles are a point or a line and do not turn.
 constexpr double degenerate_inertia = 1e-3;
-
-bool invert_inertia(const Mat<2>& second, double m, double h, Eigen::Matrix<double, 1, 1>& Y) {
-    const double inertia = second.trace();
-    const bool usable = m > 0.0 && inertia >= degenerate_inertia * m * h * h;
-    Y(0, 0) = usable ? 1.0 / inertia : 0.0;
-    return usable;
-}
-
-bool invert_inertia(const Mat<3>& second, double m, double h, Mat<3>& Y) {
-    const Mat<3> inertia = second.trace() * Mat<3>::Identity() - second;
-    Eigen::SelfAdjointEigenSolver<Mat<3>> eigen;
-    eigen.computeDirect(inertia, Eigen::EigenvaluesOnly);
-    const bool usable = m > 0.0 && eigen.eigenvalues()[0] >= degenerate_inertia * m * h * h;
-    Y = usable ? Mat<3>(inertia.inverse()) : Mat<3>(Mat<3>::Zero());
-    return usable;
-}
 
 /// Particles near a node, component by component: what is done with them needs no branch.
 template <int Dim>
@@ -113,6 +97,22 @@ struct SlotSums {
 };
 
 }  // namespace
+
+bool invert_inertia(const Mat<2>& second, double m, double length, Eigen::Matrix<double, 1, 1>& Y) {
+    const double inertia = second.trace();
+    const bool usable = m > 0.0 && inertia >= degenerate_inertia * m * length * length;
+    Y(0, 0) = usable ? 1.0 / inertia : 0.0;
+    return usable;
+}
+
+bool invert_inertia(const Mat<3>& second, double m, double length, Mat<3>& Y) {
+    const Mat<3> inertia = second.trace() * Mat<3>::Identity() - second;
+    Eigen::SelfAdjointEigenSolver<Mat<3>> eigen;
+    eigen.computeDirect(inertia, Eigen::EigenvaluesOnly);
+    const bool usable = m > 0.0 && eigen.eigenvalues()[0] >= degenerate_inertia * m * length * length;
+    Y = usable ? Mat<3>(inertia.inverse()) : Mat<3>(Mat<3>::Zero());
+    return usable;
+}
 
 template <int Dim>
 void fill_slot(const ContactScene<Dim>& scene, const CartesianGrid<Dim>& grid, const SlotWeights& weights,

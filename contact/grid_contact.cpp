@@ -11,11 +11,14 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     ContactNodeOptions nodes;
     nodes.all_nodes = options.coupling == GridCoupling::flip;
     nodes.all_particles = options.rule == GridRule::seed;
-    nodes.wall_reach = options.rule == GridRule::seed ? 1e-6 : 0.75;
+    if (options.rule == GridRule::seed) nodes.wall_reach = 1e-6;
+    // A particle at the wall may be half a cell diagonal from its node, and half a cell deep.
+    else if (options.exact_walls)
+        nodes.wall_reach = 1.5;
     nodes.weights.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
     nodes.weights.interior_weight = options.interior_weight;
     // Only where an impulse needs surfaces that meet can nodes whose surfaces are apart be left out.
-    const bool meets = options.rule == GridRule::pair && options.gap_test && !nodes.all_nodes;
+    const bool meets = options.rule != GridRule::seed && options.gap_test && !nodes.all_nodes;
     nodes.weights.rotation = options.rotation;
     nodes.skin = meets ? options.skin : 0.0;
     return nodes;
@@ -39,13 +42,13 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     report_.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
     nodes_.find(scene, trial.dt * trial.largest_speed);
     report_.searched = nodes_.searched();
-    if (options_.rule == GridRule::pair) {
+    if (options_.rule != GridRule::seed) {
         pair_.prepare(nodes_, scene, trial);
     } else {
         nodes_.choose_all();
         nodes_.fill(scene);
     }
-    if (options_.rule == GridRule::pair && options_.coupling == GridCoupling::impulse)
+    if (options_.rule != GridRule::seed && options_.coupling == GridCoupling::impulse)
         pair_.solve_particles(nodes_, scene, trial, report_);
     else
         solve_on_nodes(scene, trial);
@@ -75,7 +78,7 @@ void GridContact<Dim>::solve_on_nodes(const ContactScene<Dim>& scene, const Cont
     to_slots(trial.v_before, nodal_before_);
     to_slots(trial.v, nodal_trial_);
     nodal_ = nodal_trial_;
-    if (options_.rule == GridRule::pair)
+    if (options_.rule != GridRule::seed)
         pair_.solve_nodal(nodes_, scene, nodal_, nodal_before_, report_);
     else
         apply_seed_rule<Dim>(nodes_, scene, nodal_, nodal_before_, report_);

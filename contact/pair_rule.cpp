@@ -31,53 +31,156 @@ double tangential(const Mat<3>& W, const Eigen::Matrix<double, 3, 2>& T) {
 }  // namespace
 
 template <int Dim>
-void PairRule<Dim>::add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a,
-                            int b, int wall, std::vector<PairRow<Dim>>& rows) const {
-    const double h = nodes.grid().h();
-    const Slot<Dim>& A = nodes.slots()[a];
-    const Grain<Dim>& grain_a = scene.grains[A.grain];
+void PairRule<Dim>::add_pair(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a,
+                             int b, int page) {
+    const Slot<Dim>&A = nodes.slots()[a], &B = nodes.slots()[b];
     PairRow<Dim> row;
     row.a = a;
-    std::optional<Tile<Dim>> tile;
-    if (wall >= 0) {
-        const Wall<Dim>& plane = scene.walls[wall];
-        tile = make_wall_tile<Dim>(side(A, scene), plane, plane.distance(nodes.grid().node_position(A.index)),
-                                   h, options_);
-        row.wall = wall;
-        row.u_wall = plane.velocity;
-        row.mu = plane.friction;
-    } else {
-        const Slot<Dim>& B = nodes.slots()[b];
-        const Grain<Dim>& grain_b = scene.grains[B.grain];
-        tile = make_tile<Dim>(side(A, scene), side(B, scene), h, options_);
-        row.b = b;
-        row.mu = (*scene.friction)(grain_a.material, grain_b.material);
+    row.b = b;
+    row.mu = (*scene.friction)(scene.grains[A.grain].material, scene.grains[B.grain].material);
+    if (options_.rule != GridRule::surface) {
+        if (const auto tile = make_tile<Dim>(side(A, scene), side(B, scene), nodes.grid().h(), options_))
+            add_row(nodes, scene, dt, row, *tile, nullptr, page);
+        return;
     }
-    if (!tile) return;
-    row.gap_speed = options_.gap_test ? std::max(tile->gap, 0.0) / dt : 0.0;
+    const SurfaceSide<Dim> of_a = surface_side(nodes, a, scene), of_b = surface_side(nodes, b, scene);
+    if (looks_for<Dim>(of_a, of_b))
+        for_each_owned<Dim>(of_a, nodes.grid(), [&](int surface) {
+            if (const auto contact = meet<Dim>(of_a, surface, of_b))
+                add_row(nodes, scene, dt, row, contact->tile, &*contact, page);
+        });
+    if (looks_for<Dim>(of_b, of_a))
+        for_each_owned<Dim>(of_b, nodes.grid(), [&](int surface) {
+            auto contact = meet<Dim>(of_b, surface, of_a);
+            if (!contact) return;
+            std::swap(contact->a, contact->b);
+            contact->tile.normal = -contact->tile.normal;
+            add_row(nodes, scene, dt, row, contact->tile, &*contact, page);
+        });
+}
+
+template <int Dim>
+void PairRule<Dim>::add_wall(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a,
+                             int wall, int page) {
+    const Slot<Dim>& A = nodes.slots()[a];
+    const Wall<Dim>& plane = scene.walls[wall];
+    PairRow<Dim> row;
+    row.a = a;
+    row.wall = wall;
+    row.u_wall = plane.velocity;
+    row.mu = plane.friction;
+    if (options_.exact_walls) {
+        const SurfaceSide<Dim> of_a = surface_side(nodes, a, scene);
+        for_each_owned<Dim>(of_a, nodes.grid(), [&](int surface) {
+            const SurfaceContact<Dim> contact = meet<Dim>(of_a, surface, plane);
+            add_row(nodes, scene, dt, row, contact.tile, &contact, page);
+        });
+        return;
+    }
+    const double offset = plane.distance(nodes.grid().node_position(A.index));
+    if (const auto tile = make_wall_tile<Dim>(side(A, scene), plane, offset, nodes.grid().h(), options_))
+        add_row(nodes, scene, dt, row, *tile, nullptr, page);
+}
+
+template <int Dim>
+void PairRule<Dim>::add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
+                            PairRow<Dim> row, const Tile<Dim>& tile, const SurfaceContact<Dim>* at_surface,
+                            int page) {
+    row.gap_speed = options_.gap_test ? std::max(tile.gap, 0.0) / dt : 0.0;
     if (row.gap_speed > reachable_speed_) return;  // the row would stay without impulse
-    row.n = tile->normal;
-    row.point = tile->point;
-    if (options_.coupling == GridCoupling::impulse) {
-        // A patch that cannot turn takes its impulse at its centre; there both grains must meet.
-        if (!A.rotates)
-            row.point = A.xb;
-        else if (b >= 0 && !nodes.slots()[b].rotates)
-            row.point = nodes.slots()[b].xb;
-        row.r_a = row.point - A.xb;
-        row.W = inverse_mass<Dim>(A, row.r_a, options_.exact_mass);
-        if (b >= 0) {
-            row.r_b = row.point - nodes.slots()[b].xb;
-            row.W += inverse_mass<Dim>(nodes.slots()[b], row.r_b, options_.exact_mass);
-        }
-    } else {
+    row.n = tile.normal;
+    row.point = tile.point;
+    if (options_.coupling == GridCoupling::flip) {
+        const std::vector<Slot<Dim>>& slots = nodes.slots();
         row.r_a.setZero();
         row.r_b.setZero();
-        row.W = Mat<Dim>::Identity() * (1.0 / A.m + (b >= 0 ? 1.0 / nodes.slots()[b].m : 0.0));
+        row.W = Mat<Dim>::Identity() * (1.0 / slots[row.a].m + (row.b >= 0 ? 1.0 / slots[row.b].m : 0.0));
+    } else if (at_surface) {
+        use_patches(nodes, scene, *at_surface, row, patches_[page]);
+    } else {
+        use_slots(nodes, row);
     }
     row.W_n = row.n.dot(row.W * row.n);
     row.W_t = tangential(row.W, tangents<Dim>(row.n));
-    rows.push_back(row);
+    rows_[page].push_back(row);
+}
+
+template <int Dim>
+void PairRule<Dim>::use_slots(const ContactNodes<Dim>& nodes, PairRow<Dim>& row) const {
+    const Slot<Dim>& A = nodes.slots()[row.a];
+    const Slot<Dim>* B = row.b >= 0 ? &nodes.slots()[row.b] : nullptr;
+    // A patch that cannot turn takes its impulse at its centre; there both grains must meet.
+    if (!A.rotates)
+        row.point = A.xb;
+    else if (B && !B->rotates)
+        row.point = B->xb;
+    row.r_a = row.point - A.xb;
+    row.W = inverse_mass<Dim>(A, row.r_a, options_.exact_mass);
+    if (!B) return;
+    row.r_b = row.point - B->xb;
+    row.W += inverse_mass<Dim>(*B, row.r_b, options_.exact_mass);
+}
+
+template <int Dim>
+void PairRule<Dim>::use_patches(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                                const SurfaceContact<Dim>& contact, PairRow<Dim>& row,
+                                Patches<Dim>& patches) const {
+    const Vec<Dim> middle = row.point;
+    const auto add = [&](int slot, int surface, double to_surface) {
+        const SurfaceSide<Dim> of = surface_side(nodes, slot, scene);
+        return patches.add(scene, *of.grain, *of.rotation, *of.footprints, surface,
+                           Vec<Dim>(of.origin + row.point), Vec<Dim>(of.origin + middle + to_surface * row.n),
+                           row.n, !options_.rotation);
+    };
+    const double half_gap = 0.5 * contact.tile.gap;
+    row.patch_a = add(row.a, contact.a, -half_gap);
+    if (row.b >= 0) row.patch_b = add(row.b, contact.b, half_gap);
+    // As with slots: what cannot turn takes its impulse at its centre, and the other one meets it there.
+    const auto turns = [&](int patch) { return patch < 0 || patches.patches[patch].rotates; };
+    const auto to_centre = [&](int patch) {
+        row.point -= patches.patches[patch].r;
+        patches.patches[patch].r.setZero();
+    };
+    if (options_.rotation && !turns(row.patch_a)) {
+        to_centre(row.patch_a);
+        if (row.b >= 0) row.patch_b = add(row.b, contact.b, half_gap);
+    } else if (options_.rotation && !turns(row.patch_b)) {
+        to_centre(row.patch_b);
+        row.patch_a = add(row.a, contact.a, -half_gap);
+    }
+    row.W = patches.inverse_mass(row.patch_a, scene.mass, options_.exact_mass);
+    if (row.b >= 0) row.W += patches.inverse_mass(row.patch_b, scene.mass, options_.exact_mass);
+}
+
+/// Footprints of all shapes, once.
+template <int Dim>
+void PairRule<Dim>::know_surfaces(const ContactScene<Dim>& scene) {
+    if (options_.rule != GridRule::surface && !options_.exact_walls) return;
+    footprints_of_.resize(scene.grains.size());
+    for (std::size_t g = 0; g < scene.grains.size(); ++g) {
+        const Shape<Dim>* shape = scene.grains[g].shape;
+        std::unique_ptr<Footprints<Dim>>& known = footprints_[shape];
+        if (!known) known = std::make_unique<Footprints<Dim>>(*shape);
+        footprints_of_[g] = known.get();
+    }
+}
+
+template <int Dim>
+template <class Field>
+Vec<Dim> PairRule<Dim>::velocity(const Field& field, const ContactNodes<Dim>& nodes, std::size_t page,
+                                 int slot, int patch, const Vec<Dim>& r) const {
+    if (patch >= 0) return patches_[page].velocity(patch, field.v);
+    return field.velocity(nodes.slots()[slot], r);
+}
+
+template <int Dim>
+template <class Field>
+void PairRule<Dim>::add_impulse(Field& field, const ContactNodes<Dim>& nodes, std::size_t page, int slot,
+                                int patch, const Vec<Dim>& r, const Vec<Dim>& J) const {
+    if (patch >= 0)
+        patches_[page].add_impulse(patch, J, field.v);
+    else
+        field.add_impulse(nodes.slots()[slot], r, J);
 }
 
 /// How far [h] bodies may move before two of them, or one and a wall, can meet at a node.
@@ -89,11 +192,17 @@ double PairRule<Dim>::free_path(std::span<const Slot<Dim>> slots, const ContactS
     for (std::size_t k = 0; k < slots.size(); ++k) {
         const TileSide<Dim> A = side(slots[k], scene);
         for (std::size_t l = k + 1; l < slots.size(); ++l)
-            path = std::min(path, quern::free_path(A, side(slots[l], scene), h, options_));
+            path = std::min(path, options_.rule == GridRule::surface
+                                      ? surface_free_path<Dim>(surface_side(slots[k], scene, grid),
+                                                               surface_side(slots[l], scene, grid), h)
+                                      : quern::free_path<Dim>(A, side(slots[l], scene), h, options_));
         const Vec<Dim> x = grid.node_position(slots[k].index);
         for (const Wall<Dim>& wall : scene.walls)
             if (const double distance = wall.distance(x); std::abs(distance) <= wall_in_sight * h)
-                path = std::min(path, quern::free_path(A, wall, distance, h, options_));
+                path =
+                    std::min(path, options_.exact_walls
+                                       ? surface_free_path<Dim>(surface_side(slots[k], scene, grid), wall, h)
+                                       : quern::free_path<Dim>(A, wall, distance, h, options_));
     }
     return path;
 }
@@ -119,18 +228,18 @@ void PairRule<Dim>::choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Di
 template <int Dim>
 void PairRule<Dim>::make_rows(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt,
                               int page) {
-    std::vector<PairRow<Dim>>& rows = rows_[page];
-    rows.clear();
+    rows_[page].clear();
+    patches_[page].clear();
     const auto [first, last] = nodes.nodes_of_page(page);
     for (int node = first; node < last; ++node) {
         const std::span<const int> slots = nodes.slots_of(node);
         for (std::size_t k = 0; k < slots.size(); ++k) {
             for (std::size_t l = k + 1; l < slots.size(); ++l)
-                add_row(nodes, scene, dt, slots[k], slots[l], -1, rows);
+                add_pair(nodes, scene, dt, slots[k], slots[l], page);
             const Vec<Dim> x = nodes.grid().node_position(nodes.slots()[slots[k]].index);
             for (std::size_t w = 0; w < scene.walls.size(); ++w)
                 if (std::abs(scene.walls[w].distance(x)) <= wall_in_sight * nodes.grid().h())
-                    add_row(nodes, scene, dt, slots[k], -1, static_cast<int>(w), rows);
+                    add_wall(nodes, scene, dt, slots[k], static_cast<int>(w), page);
         }
     }
 }
@@ -139,9 +248,13 @@ template <int Dim>
 void PairRule<Dim>::prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                             const ContactTrial<Dim>& trial) {
     reachable_speed_ = faster_than_fastest * trial.largest_speed;
+    know_surfaces(scene);
     choose_nodes(nodes, scene);
     const std::size_t n_pages = static_cast<std::size_t>(nodes.n_pages());
-    if (rows_.size() < n_pages) rows_.resize(n_pages);
+    if (rows_.size() < n_pages) {
+        rows_.resize(n_pages);
+        patches_.resize(n_pages);
+    }
     page_reports_.resize(n_pages);
     parallel::for_each(
         n_pages,
@@ -155,11 +268,9 @@ void PairRule<Dim>::prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& s
 template <int Dim>
 template <class Field>
 void PairRule<Dim>::sweep(const ContactNodes<Dim>& nodes, Field& field, ContactReport<Dim>& report) {
-    const auto update = [&](PairRow<Dim>& row, double& change) {
-        const Slot<Dim>& A = nodes.slots()[row.a];
-        const Slot<Dim>* B = row.b >= 0 ? &nodes.slots()[row.b] : nullptr;
-        Vec<Dim> u = field.velocity(A, row.r_a);
-        u -= B ? field.velocity(*B, row.r_b) : row.u_wall;
+    const auto update = [&](PairRow<Dim>& row, std::size_t page, double& change) {
+        Vec<Dim> u = velocity(field, nodes, page, row.a, row.patch_a, row.r_a);
+        u -= row.b >= 0 ? velocity(field, nodes, page, row.b, row.patch_b, row.r_b) : row.u_wall;
         const double J_n = std::max(0.0, row.J_n + (row.n.dot(u) - row.gap_speed) / row.W_n);
         Vec<Dim> J = (J_n - row.J_n) * row.n;
         u -= row.W * J;
@@ -171,16 +282,16 @@ void PairRule<Dim>::sweep(const ContactNodes<Dim>& nodes, Field& field, ContactR
         row.J_t = J_t;
         if (J.squaredNorm() == 0.0) return;
         change += J.norm();
-        field.add_impulse(A, row.r_a, -J);
-        if (B) field.add_impulse(*B, row.r_b, J);
+        add_impulse(field, nodes, page, row.a, row.patch_a, row.r_a, Vec<Dim>(-J));
+        if (row.b >= 0) add_impulse(field, nodes, page, row.b, row.patch_b, row.r_b, J);
     };
     const auto visit = [&](std::size_t page, bool forward) {
         double change = 0.0, total = 0.0;
         std::vector<PairRow<Dim>>& rows = rows_[page];
         if (forward)
-            for (auto row = rows.begin(); row != rows.end(); ++row) update(*row, change);
+            for (auto row = rows.begin(); row != rows.end(); ++row) update(*row, page, change);
         else
-            for (auto row = rows.rbegin(); row != rows.rend(); ++row) update(*row, change);
+            for (auto row = rows.rbegin(); row != rows.rend(); ++row) update(*row, page, change);
         for (const PairRow<Dim>& row : rows) total += row.J_n;
         page_reports_[page].change = change;
         page_reports_[page].total = total;
@@ -231,11 +342,12 @@ void PairRule<Dim>::add_work(const ContactNodes<Dim>& nodes, const ContactScene<
                 if (row.J_n == 0.0) continue;
                 const Slot<Dim>& A = nodes.slots()[row.a];
                 const Vec<Dim> J = row.J_n * row.n + row.J_t;
-                Vec<Dim> u = 0.5 * (before.velocity(A, row.r_a) + after.velocity(A, row.r_a));
+                Vec<Dim> u = 0.5 * (velocity(before, nodes, page, row.a, row.patch_a, row.r_a) +
+                                    velocity(after, nodes, page, row.a, row.patch_a, row.r_a));
                 slot_impulse_[row.a] -= J;
                 if (row.b >= 0) {
-                    const Slot<Dim>& B = nodes.slots()[row.b];
-                    u -= 0.5 * (before.velocity(B, row.r_b) + after.velocity(B, row.r_b));
+                    u -= 0.5 * (velocity(before, nodes, page, row.b, row.patch_b, row.r_b) +
+                                velocity(after, nodes, page, row.b, row.patch_b, row.r_b));
                     slot_impulse_[row.b] += J;
                 } else {
                     u -= row.u_wall;

@@ -1,4 +1,5 @@
-// The pair rule: one impulse a pair of grains and node, by projected Gauss-Seidel.
+// The pair rule: one impulse a pair of grains and node, by projected Gauss-Seidel. Contacts of the surface
+// rule (surface_rule.hpp) are rows of the same sweeps, with patches (patch.hpp) in the place of slots.
 //
 // Impulse map of a slot (particles p around node a, r_p = x_p - xb, w = N^2 at the surface, q N^2 inside,
 // m = sum m_p w_p; N^2 couples neighbouring nodes less than N, so that contact is less stiff and the sweeps
@@ -22,10 +23,13 @@
 // In the flip coupling the same rows act on nodal velocities: W = 1/m_A + 1/m_B, no lever.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <vector>
 
 #include "contact/contact_nodes.hpp"
-#include "contact/tile.hpp"
+#include "contact/patch.hpp"
+#include "contact/surface_rule.hpp"
 
 namespace quern {
 
@@ -33,12 +37,13 @@ template <int Dim>
 struct PairRow {
     int a = -1, b = -1;  ///< slots; b = -1: a wall
     int wall = -1;
-    Vec<Dim> n, u_wall;
-    Vec<Dim> r_a, r_b;            ///< x_c - xb of each slot [m]
-    Vec<Dim> point;               ///< x_c from the node of slot a [m]
-    Mat<Dim> W;                   ///< inverse mass [1/kg]
-    double W_n = 0.0, W_t = 0.0;  ///< n.W n, lambda_max(T^T W T)
-    double gap_speed = 0.0;       ///< allowed approach speed [m/s]
+    int patch_a = -1, patch_b = -1;  ///< of the page, in the place of the slots; -1: none
+    Vec<Dim> n = Vec<Dim>::Zero(), u_wall = Vec<Dim>::Zero();
+    Vec<Dim> r_a = Vec<Dim>::Zero(), r_b = Vec<Dim>::Zero();  ///< x_c - xb of each slot [m]
+    Vec<Dim> point = Vec<Dim>::Zero();                        ///< x_c from the node of slot a [m]
+    Mat<Dim> W = Mat<Dim>::Zero();                            ///< inverse mass [1/kg]
+    double W_n = 0.0, W_t = 0.0;                              ///< n.W n, lambda_max(T^T W T)
+    double gap_speed = 0.0;                                   ///< allowed approach speed [m/s]
     double mu = 0.0;
     double J_n = 0.0;
     Vec<Dim> J_t = Vec<Dim>::Zero();
@@ -71,8 +76,32 @@ class PairRule {
     double free_path(std::span<const Slot<Dim>> slots, const ContactScene<Dim>& scene,
                      const CartesianGrid<Dim>& grid) const;
     void make_rows(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int page);
-    void add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b,
-                 int wall, std::vector<PairRow<Dim>>& rows) const;
+    void add_pair(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int b,
+                  int page);
+    void add_wall(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, int a, int wall,
+                  int page);
+    /// The row of a contact, unless no speed present can close its gap.
+    void add_row(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, double dt, PairRow<Dim> row,
+                 const Tile<Dim>& tile, const SurfaceContact<Dim>* at_surface, int page);
+    void use_slots(const ContactNodes<Dim>& nodes, PairRow<Dim>& row) const;
+    void use_patches(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                     const SurfaceContact<Dim>& contact, PairRow<Dim>& row, Patches<Dim>& patches) const;
+    void know_surfaces(const ContactScene<Dim>& scene);
+    template <class Field>
+    Vec<Dim> velocity(const Field& field, const ContactNodes<Dim>& nodes, std::size_t page, int slot,
+                      int patch, const Vec<Dim>& r) const;
+    template <class Field>
+    void add_impulse(Field& field, const ContactNodes<Dim>& nodes, std::size_t page, int slot, int patch,
+                     const Vec<Dim>& r, const Vec<Dim>& J) const;
+    SurfaceSide<Dim> surface_side(const ContactNodes<Dim>& nodes, int slot,
+                                  const ContactScene<Dim>& scene) const {
+        return surface_side(nodes.slots()[slot], scene, nodes.grid());
+    }
+    SurfaceSide<Dim> surface_side(const Slot<Dim>& slot, const ContactScene<Dim>& scene,
+                                  const CartesianGrid<Dim>& grid) const {
+        return {&slot,   &scene.grains[slot.grain],     &rotation_[slot.grain], footprints_of_[slot.grain],
+                scene.x, grid.node_position(slot.index)};
+    }
     TileSide<Dim> side(const Slot<Dim>& slot, const ContactScene<Dim>& scene) const {
         return {&slot, &scene.grains[slot.grain], &rotation_[slot.grain]};
     }
@@ -83,11 +112,14 @@ class PairRule {
                   const After& after, ContactReport<Dim>& report);
 
     GridContactOptions options_;
-    double reachable_speed_ = 0.0;                 ///< of one slot against another in this step [m/s]
-    std::vector<Mat<Dim>> rotation_;               ///< [n_grains] of grains with slots
-    std::vector<std::vector<PairRow<Dim>>> rows_;  ///< [n_pages] node after node
-    std::vector<PageReport> page_reports_;         ///< [n_pages]
-    std::vector<Vec<Dim>> slot_impulse_;           ///< [n_slots] received [N s; 2D: N s/m]
+    double reachable_speed_ = 0.0;    ///< of one slot against another in this step [m/s]
+    std::vector<Mat<Dim>> rotation_;  ///< [n_grains] of grains with slots
+    std::map<const Shape<Dim>*, std::unique_ptr<Footprints<Dim>>> footprints_;
+    std::vector<const Footprints<Dim>*> footprints_of_;  ///< [n_grains]
+    std::vector<std::vector<PairRow<Dim>>> rows_;        ///< [n_pages] node after node
+    std::vector<Patches<Dim>> patches_;                  ///< [n_pages] of rows at surfaces
+    std::vector<PageReport> page_reports_;               ///< [n_pages]
+    std::vector<Vec<Dim>> slot_impulse_;                 ///< [n_slots] received [N s; 2D: N s/m]
 };
 
 }  // namespace quern

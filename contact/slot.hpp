@@ -33,4 +33,9 @@ struct Slot {
     Vec<Dim> gradient;  ///< sum V_p grad_a B(x_a - x_p), quadratic B-spline: points into the grain
 };
 
+/// Inverse of the inertia sum m (|r|^2 1 - r r^T), from second = sum m r r^T; false, and 0, for a point or a
+/// line: if the least moment is below 1e-3 m length^2.
+bool invert_inertia(const Mat<2>& second, double m, double length, Eigen::Matrix<double, 1, 1>& Y);
+bool invert_inertia(const Mat<3>& second, double m, double length, Mat<3>& Y);
+
 }  // namespace quern

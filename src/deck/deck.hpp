@@ -84,7 +84,8 @@ struct GridDeck {
     Place place;
 };
 
-enum class ContactRule { none, pair, seed };
+enum class ContactRule { none, pair, surface, seed };
+enum class ContactWalls { rule, exact, tile };  ///< rule: exact for surface, tile for pair
 enum class ContactCoupling { impulse, flip };
 enum class ContactMethodKind { grid, node_pair };
 
@@ -117,6 +118,7 @@ struct NodePairDeck {
 struct ContactDeck {
     ContactMethodKind method = ContactMethodKind::grid;
     ContactRule rule = ContactRule::pair;
+    ContactWalls walls = ContactWalls::rule;
     ContactCoupling coupling = ContactCoupling::impulse;
     double friction = 0.0;  ///< between grains, where no pair of materials says otherwise
     std::vector<ContactPair> pairs;

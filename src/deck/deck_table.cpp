@@ -235,8 +235,11 @@ Table<ContactDeck> contact_table() {
     t.word("method", &T::method, {"grid", "node_pair"},
            "On the grid, or between nodes; all keys but rule: none, friction, pairs and node_pair belong to "
            "the grid");
-    t.word("rule", &T::rule, {"none", "pair", "seed"},
-           "No contact, pairs of grains on a node, or the seed rule");
+    t.word("rule", &T::rule, {"none", "pair", "surface", "seed"},
+           "No contact, pairs of grains on a node, surface particles on surfaces, or the seed rule");
+    t.word("walls", &T::walls, {"rule", "exact", "tile"},
+           "Gap to walls: at surface particles (exact) or one a node (tile); rule: exact for surface, else "
+           "tile");
     t.word("coupling", &T::coupling, {"impulse", "flip"}, "How nodal changes reach the particles");
     t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient between grains");
     t.list("pairs", &T::pairs, pair_table(), "What holds between particular materials");
@@ -254,7 +257,18 @@ Table<ContactDeck> contact_table() {
     t.flag("gap_test", &T::gap_test, "Grains may approach as far as there is a gap");
     t.flag("exact_mass", &T::exact_mass, "Exact inverse mass of the impulse map; false: nodal mass");
     t.section("node_pair", &T::node_pair, node_pair_table(), "Contact between nodes (method: node_pair)");
-    t.finish = [](T& contact, const Cursor& at, const Context&) { contact.place = at.place(); };
+    t.finish = [](T& contact, const Cursor& at, const Context&) {
+        contact.place = at.place();
+        const bool flip = contact.coupling == ContactCoupling::flip;
+        if (contact.method == ContactMethodKind::node_pair) return;
+        if (contact.rule == ContactRule::surface && flip)
+            throw InputError(at.where("coupling"), "flip with rule surface", "impulse",
+                             "its contacts are at particles, not at nodes");
+        if (contact.walls == ContactWalls::exact && (contact.rule == ContactRule::seed || flip))
+            throw InputError(at.where("walls"),
+                             flip ? "exact walls with coupling flip" : "exact walls with rule seed",
+                             "rule or tile", "exact walls act on particles, not on nodes");
+    };
     return t;
 }
 

@@ -72,7 +72,11 @@ NodePairOptions node_pair_options(const NodePairDeck& deck) {
 
 GridContactOptions contact_options(const ContactDeck& deck) {
     GridContactOptions options;
-    options.rule = deck.rule == ContactRule::seed ? GridRule::seed : GridRule::pair;
+    options.rule = deck.rule == ContactRule::seed      ? GridRule::seed
+                   : deck.rule == ContactRule::surface ? GridRule::surface
+                                                       : GridRule::pair;
+    options.exact_walls = deck.walls == ContactWalls::rule ? deck.rule == ContactRule::surface
+                                                           : deck.walls == ContactWalls::exact;
     options.coupling = deck.coupling == ContactCoupling::flip ? GridCoupling::flip : GridCoupling::impulse;
     options.interior_weight = deck.interior_weight;
     options.max_sweeps = deck.max_sweeps;

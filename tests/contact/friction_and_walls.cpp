@@ -52,15 +52,16 @@ template <int Dim>
 void check_cone() {
     CAPTURE(Dim);
     for (const Method& method : methods()) {
-        if (method.options.rule == GridRule::seed) continue;
+        if (!method.by_pairs()) continue;
         CAPTURE(method.name);
         for (const double mu : {0.0, 0.1, 0.5}) {
             CAPTURE(mu);
             // One wall has one normal: the bound on the sum is reached only if every row reaches its own.
             const auto [least, most] = friction_ratio<Dim>(method.options, mu, 5.0);
             CHECK(most <= mu + 1e-12);
-            // measured 1 - 8.2e-4 (slip turns a little), bound 1 - 5e-3
-            CHECK(least >= mu * (1.0 - 5e-3));
+            // measured 1 - 8.2e-4 (slip turns a little), bound 1 - 5e-3; surface: 1 - 9e-3 in the plane and
+            // 1 - 3.4e-2 in space (a patch at a corner sticks when it is pulled along), bound 1 - 5e-2
+            CHECK(least >= mu * (1.0 - (method.options.rule == GridRule::surface ? 5e-2 : 5e-3)));
         }
         const auto [least, most] = friction_ratio<Dim>(converged(method.options), 0.5, 0.2);
         CHECK(most < 0.4);    // measured 0.2, bound 0.4
@@ -112,10 +113,10 @@ TEST_CASE("Friction: without it no method gives grains a tangential impulse") {
             }
             // What is left is the error of the normals: those of tiles, or each grain's own. measured 0.029
             // (pair) and 0.23 (seed), bound 0.06 and 0.4
-            CHECK(worst < (method.options.rule == GridRule::pair ? 0.06 : 0.4));
+            CHECK(worst < (method.by_pairs() ? 0.06 : 0.4));
             // Lever of the impulse about the centre, in radii: measured 0.052 (pair + impulse), 0.19 (pair +
             // flip: at the nodes), 0.030 (seed), bound 0.1 and 0.3
-            CHECK(spin < (method.name == "pair + flip" ? 0.3 : 0.1));
+            CHECK(spin < (method.by_pairs() && method.flip() ? 0.3 : 0.1));
         });
 }
 
@@ -193,7 +194,7 @@ TEST_CASE("Wall: every method stops a grain that has reached it") {
             least_left = std::min(least_left, left);
             most_left = std::max(most_left, left);
         }
-        if (method.name == "pair + impulse") {
+        if (method.at_points()) {
             CHECK(most_left < 0.05);  // measured 0.021, bound 0.05
         } else {
             CHECK(least_left > 0.3);  // measured 0.40 (pair + flip), 0.42 (seed), bound 0.3

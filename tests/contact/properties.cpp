@@ -1,17 +1,10 @@
-// What every contact method promises, over the table {pair, seed} x {impulse, flip} x {plane, space} x
-// {rings, lattice}. Numbers are the worst of all directions and grid shifts.
+// What every contact method promises, over the table {pair, surface, seed} x {impulse, flip} x {plane, space}
+// x {rings, lattice}. Numbers are the worst of all directions and grid shifts.
 #include "tests/contact/scenes.hpp"
 
 namespace quern::test {
 
 namespace {
-
-bool is_pair(const Method& method) {
-    return method.options.rule == GridRule::pair;
-}
-bool is_flip(const Method& method) {
-    return method.options.coupling == GridCoupling::flip;
-}
 
 /// Approach of the mean velocities of the two grains along their line [m/s].
 template <int Dim>
@@ -36,7 +29,7 @@ TEST_CASE("Contact: approaching grains are pushed apart, and what is left of the
                 least_left = std::min(least_left, left);
                 most_left = std::max(most_left, left);
             }
-            if (method.name == "pair + impulse") {
+            if (method.at_points()) {
                 CHECK(most_left < 0.05);  // measured 0.019, bound 0.05
             } else {
                 // One lumped map removes a part only: what makes seed + impulse a dashpot. Flip maps the same
@@ -63,7 +56,7 @@ TEST_CASE("Contact: separating grains keep their velocities bit for bit") {
 TEST_CASE("Contact: a gap wider than one step's approach is left alone by the pair rule") {
     for_each_case(
         []<int Dim>(const Method& method, const Filling<Dim>& filling, const std::vector<Aim<Dim>>& all) {
-            if (!is_pair(method)) return;
+            if (!method.by_pairs()) return;
             for (const Aim<Dim>& aim : all) {
                 World<Dim> world = make_pair_of_grains<Dim>(filling.shape, aim, 0.3 * filling.shape.dx, 1.0);
                 world.dt = 0.09 * filling.shape.dx;  // 60 % of the gap would close in it
@@ -99,15 +92,15 @@ TEST_CASE("Contact: action equals reaction") {
         }
         CHECK(exchanged > 5e-3);  // measured 8.3e-3 to 1.9e-2, bound 5e-3
         CHECK(impulses < 1e-14);  // measured 1e-15, bound 1e-14
-        if (is_pair(method)) {
+        if (method.by_pairs()) {
             CHECK(linear < 1e-14);  // measured 8e-16, bound 1e-14
         } else {
             CHECK(linear < 5e-3);  // measured 2.4e-3 (one eighth of what is exchanged), bound 5e-3
         }
         // Nodal impulses of two grains act at the centres of two patches: only pair + impulse has one point.
-        if (method.name == "pair + impulse") CHECK(angular < 1e-13);  // measured 3.1e-15, bound 1e-13
-        if (method.name == "pair + flip") CHECK(angular < 3e-3);      // measured 1.5e-3, bound 3e-3
-        if (!is_pair(method)) CHECK(angular < 4e-2);                  // measured 2.0e-2, bound 4e-2
+        if (method.at_points()) CHECK(angular < 1e-13);           // measured 3.1e-15, bound 1e-13
+        if (method.name == "pair + flip") CHECK(angular < 3e-3);  // measured 1.5e-3, bound 3e-3
+        if (!method.by_pairs()) CHECK(angular < 4e-2);            // measured 2.0e-2, bound 4e-2
     });
 }
 
@@ -131,8 +124,8 @@ TEST_CASE("Contact: never raises the kinetic energy, and the works say where it 
                 }
             CHECK(gain < 0.0);
             // Friction that holds a sticking point does no work but for the tolerance of the sweeps.
-            CHECK(friction < 1e-3);                            // measured 3.2e-4, bound 1e-3
-            if (!is_flip(method)) CHECK(unaccounted < 1e-14);  // measured 2.3e-15, bound 1e-14
+            CHECK(friction < 1e-3);                          // measured 3.2e-4, bound 1e-3
+            if (!method.flip()) CHECK(unaccounted < 1e-14);  // measured 2.3e-15, bound 1e-14
         });
 }
 
@@ -178,7 +171,9 @@ TEST_CASE("Contact: turned by a right angle with the grid, the result turns alon
                 largest = std::max(largest, largest_difference<Dim>(world.particles.v, v));
             }
             CHECK(largest > 0.3);
-            CHECK(worst < 4e-13);  // measured 1.4e-13, bound 4e-13 [m/s]
+            // measured 1.4e-13, bound 4e-13 [m/s]; surface: 8.3e-5, bound 4e-4 (rows of both directions
+            // nearly agree, and converge in more sweeps than there are)
+            CHECK(worst < (method.options.rule == GridRule::surface ? 4e-4 : 4e-13));
         });
 }
 
@@ -198,8 +193,8 @@ TEST_CASE("Contact: turned by thirty degrees against the grid, the impulse stays
             const Vec<Dim> expected = rotation_matrix(turn) * impulses[0].normalized();
             worst = std::max(worst, (impulses[1].normalized() - expected).norm());
         }
-        // measured 0.011 (pair) and 0.112 (seed), bound 0.03 and 0.25
-        CHECK(worst < (is_pair(method) ? 0.03 : 0.25));
+        // measured 0.011 (pair), 0.031 (surface) and 0.112 (seed), bound 0.04 and 0.25
+        CHECK(worst < (method.by_pairs() ? 0.04 : 0.25));
     });
 }
 
@@ -241,11 +236,11 @@ TEST_CASE("Contact: flip moves positions with the nodal velocities") {
         []<int Dim>(const Method& method, const Filling<Dim>& filling, const std::vector<Aim<Dim>>& all) {
             World<Dim> world = make_pair_of_grains<Dim>(filling.shape, all[0], 20.0 * filling.shape.dx, 1.0);
             GridContact<Dim> contact(world.grid, method.options);
-            CHECK(contact.moves_with_grid() == is_flip(method));
+            CHECK(contact.moves_with_grid() == method.flip());
             world.collide(method.options);
             // Far apart: each grain moves rigidly at its own speed. Impulse couplings write no drift at all.
             for (int p = 0; p < world.particles.size(); ++p)
-                CHECK((world.drift[p] - (is_flip(method) ? 1.0 : 0.0) * world.particles.v[p]).norm() < 1e-14);
+                CHECK((world.drift[p] - (method.flip() ? 1.0 : 0.0) * world.particles.v[p]).norm() < 1e-14);
         });
 }
 

@@ -181,19 +181,27 @@ World<Dim> make_pair_of_grains(const Shape<Dim>& shape, const Aim<Dim>& aim, dou
     return world;
 }
 
-/// The table: every rule with every coupling.
+/// The table: every rule with every coupling that it has.
 struct Method {
     std::string name;
     GridContactOptions options;
+
+    /// Impulses between pairs, along one normal: pair and surface.
+    bool by_pairs() const { return options.rule != GridRule::seed; }
+    bool flip() const { return options.coupling == GridCoupling::flip; }
+    /// Pairs that act at one point.
+    bool at_points() const { return by_pairs() && !flip(); }
 };
 inline std::vector<Method> methods() {
     std::vector<Method> list;
-    for (const GridRule rule : {GridRule::pair, GridRule::seed})
+    for (const GridRule rule : {GridRule::pair, GridRule::surface, GridRule::seed})
         for (const GridCoupling coupling : {GridCoupling::impulse, GridCoupling::flip}) {
+            if (rule == GridRule::surface && coupling == GridCoupling::flip) continue;  // no nodes to act on
             Method method;
-            method.name = rule == GridRule::pair ? "pair" : "seed";
+            method.name = rule == GridRule::pair ? "pair" : rule == GridRule::surface ? "surface" : "seed";
             method.name += coupling == GridCoupling::impulse ? " + impulse" : " + flip";
             method.options.rule = rule;
+            method.options.exact_walls = rule == GridRule::surface;
             method.options.coupling = coupling;
             list.push_back(method);
         }

@@ -81,6 +81,8 @@ TEST_CASE("Determinism: thirty grains in the plane, every method") {
     check_threads(packing, {"contact.coupling=flip"}, 30);
     check_threads(packing, {"contact.rule=seed"}, 30);
     check_threads(packing, {"contact.method=node_pair", "contact.node_pair={damping: nodes}"}, 30);
+    check_threads(packing, {"contact.rule=surface"}, 30);
+    check_threads(packing, {"contact.walls=exact"}, 30);
 }
 
 TEST_CASE("Determinism: lattice grains of unlike size, which share unions and break") {
@@ -118,7 +120,9 @@ TEST_CASE("Determinism: results do not depend on how long a search for contact n
         }
     };
     check(packing, {"time.end=0.3"});
+    check(packing, {"time.end=0.2", "contact.rule=surface"});
     for (const std::string seed : {"2", "4"}) check(mixed, {"params.seed=" + seed});
+    check(mixed, {"params.seed=2", "contact.rule=surface", "time.end=0.4"});
 }
 
 TEST_CASE("Determinism: results do not depend on how long a list of node pairs serves") {

@@ -1,0 +1,116 @@
+// The surface rule: contact points are the surface particles of one grain against the surface of the other.
+//
+// Around a surface particle q of a grain its surface is a height y over the tangent plane of n at a point c,
+// fitted to the true surface points of its neighbours p, s_p = x_p + delta_p nu_p, by moving least squares
+// (sigma = +1 for the grain that n points out of, -1 for the other; kappa: reference curvature at q):
+//
+//     d_p = s_p - c,   t_p = T^T d_p,   w_p = K(|t_p|/(2.5 dx)),   K(z) = (1 - z^2)^2 below 1, else 0
+//     y(t) = c0 + c1.t - sigma kappa |t|^2/2,    c0, c1 from  y_p = n.d_p + sigma b(|t_p - t_0|)
+//     b(u) = (1 - sqrt(1 - kappa^2 u^2))/kappa - kappa u^2/2,  t_0 = sigma c1/kappa of a first fit without b
+//
+// so a surface is where its particles are now and as round as it was made (b: what a circle drops beyond the
+// parabola of its apex t_0). A particle p of grain A meets the surface of B around its particle q that is
+// nearest to s_p:
+//
+//     smooth A    closest approach of both heights over |t| <= dx/2, what p stands for:
+//                 t* = clamp((c1_A - c1_B)/(kappa_A + kappa_B)),  g = y_B(t*) - y_A(t*),  x_c midway;
+//                 n starts as nu_p - nu_q, and is turned once by the mean slope there
+//     A cornered  p is a ball of radius delta_p:  g = y_B(0) - delta_p with c = x_p, n turned to B's normal;
+//                 next to an edge or corner it is that point (footprint.hpp: tip) instead
+//     q an edge or corner of B: two balls if p is one, too; else nothing, for q itself meets A's face
+//     wall        the same with y_B the plane itself, n fixed: exact, and no node has a part in it
+//
+// Both directions count, A on B and B on A: so no corner gets into a face, and the numbers of the grains say
+// nothing. Only of two smooth grains of unlike particles the coarser one does not look for the finer. A
+// contact belongs to the node nearest to x_p; each side takes the impulse with a patch (patch.hpp). Allowed
+// approach, cone and sweeps: pair_rule.hpp.
+//
+// Guendelman, Bridson, Fedkiw 2003 have points of one body on a signed distance of the other, stored on a
+// grid of its own; here the distance is fitted where it is asked for, nodes only tell who is near, and a
+// point is a piece of surface, so that a disk rolls as a disk and not as the polygon of its particles.
+#pragma once
+
+#include "contact/footprint.hpp"
+#include "contact/tile.hpp"
+
+namespace quern {
+
+/// What one side of a contact is made of. `origin` [m]: where its positions see the node.
+template <int Dim>
+struct SurfaceSide {
+    const Slot<Dim>* slot;
+    const Grain<Dim>* grain;
+    const Mat<Dim>* rotation;  ///< of the grain, from the reference to now
+    const Footprints<Dim>* footprints;
+    std::span<const Vec<Dim>> x;  ///< positions of all particles [m]
+    Vec<Dim> origin;
+
+    const SurfacePoint<Dim>& point(int surface) const { return grain->shape->surface[surface]; }
+    Vec<Dim> normal(int surface) const { return *rotation * point(surface).nu; }
+    double depth(int surface) const { return point(surface).delta * grain->scale; }
+    double dx() const { return grain->shape->dx * grain->scale; }
+    bool smooth() const { return !grain->shape->cornered; }
+    Vec<Dim> position(int surface) const { return x[grain->first + point(surface).node] - origin; }
+    /// Nearest point of the true surface to a surface particle, from the node [m].
+    Vec<Dim> on_surface(int surface) const { return position(surface) + depth(surface) * normal(surface); }
+    Vec<Dim> place(int surface, const Tip<Dim>& tip) const {
+        return position(surface) + grain->scale * (*rotation * tip.offset);
+    }
+};
+
+/// The surface of a grain over a plane.
+template <int Dim>
+struct Height {
+    Eigen::Matrix<double, Dim - 1, 1> c1;
+    double c0, kappa;  ///< [m], [1/m]
+};
+
+/// Height of the surface around its particle `nearest`, over the plane through `centre` (from the node, [m])
+/// across n. sigma: +1 if n points out of the grain, -1 into it. Nothing if
+/// that particle is more than 1.5 dx away along the plane: there the surface is no height. apex: where it is
+/// level, by an earlier fit, from the centre.
+template <int Dim>
+std::optional<Height<Dim>> fit_height(const SurfaceSide<Dim>& side, int nearest, const Vec<Dim>& centre,
+                                      const Vec<Dim>& n, double sigma, const Vec<Dim>* apex = nullptr);
+
+template <int Dim>
+struct SurfaceContact {
+    Tile<Dim> tile;  ///< normal from A to B
+    int a, b;        ///< surface particles; b = -1: a wall
+};
+
+/// Surface particle `a` of A against B; nothing if B is not near and facing.
+template <int Dim>
+std::optional<SurfaceContact<Dim>> meet(const SurfaceSide<Dim>& A, int a, const SurfaceSide<Dim>& B);
+
+/// Surface particle `a` of A against a wall.
+template <int Dim>
+SurfaceContact<Dim> meet(const SurfaceSide<Dim>& A, int a, const Wall<Dim>& wall);
+
+/// Whether surface particles of A look for B.
+template <int Dim>
+bool looks_for(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B);
+
+/// Calls visit(surface) for the surface particles in the support of a slot that belong to its node.
+template <int Dim, class Visit>
+void for_each_owned(const SurfaceSide<Dim>& side, const CartesianGrid<Dim>& grid, Visit&& visit) {
+    for (int k = 0; k < side.slot->n_support; ++k) {
+        const Support<Dim>& e = side.slot->support[k];
+        if (e.surface < 0) continue;
+        const Vec<Dim> half_up = grid.in_cells(side.x[e.particle]) + Vec<Dim>::Constant(0.5);
+        if (CartesianGrid<Dim>::cell(half_up) == side.slot->index) visit(e.surface);
+    }
+}
+
+/// How far each of two bodies may move before surfaces can meet near a node [h]:
+///
+///     sqrt(d^2 - dx^2)/(4 h), at most 1/10       d: least distance of two surface points there
+///
+/// Surface points stand a spacing apart, so two surfaces may be nearer than d by no more; dx of the coarser
+/// one. A wall is exact: half of the least gap.
+template <int Dim>
+double surface_free_path(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B, double h);
+template <int Dim>
+double surface_free_path(const SurfaceSide<Dim>& A, const Wall<Dim>& wall, double h);
+
+}  // namespace quern
