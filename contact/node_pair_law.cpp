@@ -14,8 +14,14 @@ double approach_time(double z) {
     return z < 1.0 ? std::acos(z) / std::sqrt(1.0 - z * z) : std::acosh(z) / std::sqrt(z * z - 1.0);
 }
 
-double coefficient(bool in_space) {
-    return (in_space ? 18.0 : 12.0) / std::numbers::pi;
+/// p = 5 in space, 4 in the plane, but for the published rule.
+bool in_space(int dimension, PairStiffness rule) {
+    return dimension == 3 || rule == PairStiffness::published;
+}
+
+double coefficient(int dimension, PairStiffness rule) {
+    if (rule == PairStiffness::layer) return 1.0;
+    return (in_space(dimension, rule) ? 18.0 : 12.0) / std::numbers::pi;
 }
 
 }  // namespace
@@ -72,10 +78,11 @@ NodePairLaw<Dim>::NodePairLaw(std::span<const Grain<Dim>> grains, std::span<cons
         threat.spacing = std::min(threat.spacing, side.spacing);
         threat.radius = std::max(threat.radius, side.largest_radius);
         threat.volume = std::max(threat.volume, side.largest_volume);
-        const bool in_space =
-            Dim == 3 || laws_(side.material, side.material).rule == PairStiffness::published;
-        threat.push =
-            std::max(threat.push, side.largest_volume * horizon_power(static_cast<int>(g), in_space));
+        for (const PairStiffness rule :
+             {PairStiffness::layer, PairStiffness::consistent, PairStiffness::published}) {
+            double& push = threat.push[static_cast<std::size_t>(rule)];
+            push = std::max(push, side.largest_volume * length_power(static_cast<int>(g), rule));
+        }
     }
     for (const Side& side : sides_) n_materials_ = std::max(n_materials_, side.material + 1);
     damping_ratio_.assign(static_cast<std::size_t>(n_materials_ * n_materials_), 0.0);
@@ -92,11 +99,10 @@ NodePairLaw<Dim>::NodePairLaw(std::span<const Grain<Dim>> grains, std::span<cons
         }
 }
 
-/// e^(-p/2), with K = (12 or 18)/pi k e^-p: p = 5 in space, 4 in the plane.
 template <int Dim>
-double NodePairLaw<Dim>::horizon_power(int grain, bool in_space) const {
-    const double e = bodies_[grain].horizon;
-    return in_space ? 1.0 / (e * e * std::sqrt(e)) : 1.0 / (e * e);
+double NodePairLaw<Dim>::length_power(int grain, PairStiffness rule) const {
+    const double l = rule == PairStiffness::layer ? sides_[grain].spacing : bodies_[grain].horizon;
+    return in_space(Dim, rule) ? 1.0 / (l * l * std::sqrt(l)) : 1.0 / (l * l);
 }
 
 template <int Dim>
@@ -119,11 +125,11 @@ template <int Dim>
 double NodePairLaw<Dim>::stiffness(int a, int b) const {
     const PairLaw& pair = law(a, b);
     if (pair.rule == PairStiffness::given) return pair.stiffness;
-    const bool published = pair.rule == PairStiffness::published, in_space = Dim == 3 || published;
+    const bool published = pair.rule == PairStiffness::published;
     const double k_a = published ? bodies_[a].bulk_modulus : bodies_[a].modulus;
     const double k_b = published ? bodies_[b].bulk_modulus : bodies_[b].modulus;
-    return coefficient(in_space) * 2.0 * k_a * k_b / (k_a + k_b) *
-           (horizon_power(a, in_space) * horizon_power(b, in_space));
+    return coefficient(Dim, pair.rule) * 2.0 * k_a * k_b / (k_a + k_b) *
+           (length_power(a, pair.rule) * length_power(b, pair.rule));
 }
 
 template <int Dim>
@@ -143,8 +149,7 @@ double NodePairLaw<Dim>::stable_step(int grain) const {
         if (pair.rule == PairStiffness::given) {
             push *= other.volume;
         } else {
-            const bool in_space = Dim == 3 || pair.rule == PairStiffness::published;
-            push *= other.push / horizon_power(other.grain, in_space);
+            push *= other.push[static_cast<std::size_t>(pair.rule)] / length_power(other.grain, pair.rule);
         }
         const double one = push / side.density;  // k_ij/m_i
         squared = std::max(squared, 2.0 * n_springs * one);

@@ -89,7 +89,7 @@ enum class ContactWalls { rule, exact, tile };  ///< rule: exact for surface, ti
 enum class ContactCoupling { impulse, flip };
 enum class ContactMethodKind { grid, node_pair };
 
-enum class NodePairStiffness { consistent, published };
+enum class NodePairStiffness { layer, consistent, published };
 enum class NodePairRadius { surface, published };
 enum class NodePairDamping { none, nodes, centres };
 enum class NodePairFriction { history, slip, published };
@@ -98,7 +98,7 @@ enum class NodePairParticles { surface, all };
 /// Contact between nodes; equations in contact/node_pair_law.hpp and node_pair_contact.hpp.
 struct NodePairDeck {
     std::optional<double> stiffness;  ///< K [N/m^7; 2D: N/m^6]; none: by the rule
-    NodePairStiffness stiffness_rule = NodePairStiffness::consistent;
+    NodePairStiffness stiffness_rule = NodePairStiffness::layer;
     NodePairRadius radius = NodePairRadius::surface;
     double radius_factor = 0.95;           ///< over the smallest distance of two nodes
     std::optional<double> contact_radius;  ///< R [m]; none: by the rule

@@ -182,11 +182,11 @@ Table<NodePairDeck> node_pair_table() {
     using T = NodePairDeck;
     Table<T> t;
     Key stiffness = stiffness_key;
-    stiffness.words = {"consistent", "published"};
+    stiffness.words = {"layer", "consistent", "published"};
     stiffness.about =
-        "Force over overlap and both volumes (2D: N/m^6); from the moduli: of the right dimension, or as "
-        "published, "
-        "18 K/(pi horizon^5) in 2D, too";
+        "Force over overlap and both volumes (2D: N/m^6); or from the moduli: that of a layer of particles, "
+        "of a "
+        "single bond, or as published, 18 K/(pi horizon^5) in 2D, too";
     t.add(
         stiffness,
         [stiffness](T& deck, const Cursor& at, const Context& now) {

@@ -224,8 +224,9 @@ void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
 PairLaws pair_laws(const Deck& deck) {
     const NodePairDeck& from = deck.contact.node_pair;
     PairLaw all;
-    all.rule = from.stiffness_rule == NodePairStiffness::published ? PairStiffness::published
-                                                                   : PairStiffness::consistent;
+    all.rule = from.stiffness_rule == NodePairStiffness::published    ? PairStiffness::published
+               : from.stiffness_rule == NodePairStiffness::consistent ? PairStiffness::consistent
+                                                                      : PairStiffness::layer;
     if (from.stiffness) all.rule = PairStiffness::given;
     all.stiffness = from.stiffness.value_or(0.0);
     all.radius = from.contact_radius.value_or(0.0);

@@ -238,8 +238,8 @@ TEST_CASE("NodePair: the list finds what a search over all pairs finds") {
 }
 
 TEST_CASE("NodePair: stiffness has the dimension it says") {
-    // The same grains in metres and in millimetres: forces of the consistent rule agree, those of the
-    // published one differ by the unit in the plane.
+    // The same grains in metres and in millimetres: forces agree, those of the published rule differ by the
+    // unit in the plane.
     const auto force = [](double unit, PairStiffness rule) {
         const Shape<2> shape = make_rings_shape(0.5 / unit, 6);
         const CartesianGrid<2> grid({0.0, 0.0}, 0.2 / unit, {32, 32}, {false, false});
@@ -258,8 +258,8 @@ TEST_CASE("NodePair: stiffness has the dimension it says") {
                    .grain_impulse[1][0] /
                unit;
     };
-    CHECK(force(1e-3, PairStiffness::consistent) ==
-          doctest::Approx(force(1.0, PairStiffness::consistent)).epsilon(1e-9));
+    for (const PairStiffness rule : {PairStiffness::layer, PairStiffness::consistent})
+        CHECK(force(1e-3, rule) == doctest::Approx(force(1.0, rule)).epsilon(1e-9));
     CHECK(force(1e-3, PairStiffness::published) ==
           doctest::Approx(1e-3 * force(1.0, PairStiffness::published)).epsilon(1e-9));
 }

@@ -125,7 +125,7 @@ walls: [{side: y-, friction: 0.4, velocity: ["0.2*sin(40*t)", "0.3*cos(30*t)"]}]
 contact: {method: node_pair}
 grains: [{shape: disk, material: rubber, position: [2, 0.55], velocity: [1, -2]}]
 )yaml",
-     2e-4, &EnergyBudget::friction},
+     2e-3, &EnergyBudget::friction},
     {"node pairs: dashpots", R"yaml(
 time: {end: 0.2, safety: 0.3}
 walls: [{side: y-, friction: 0.4}]
@@ -135,7 +135,7 @@ grains:
   - {shape: disk, material: rubber, position: [1.5, 0.6], velocity: [2, 0]}
   - {shape: disk, material: rubber, position: [2.6, 0.9], velocity: [-2, 0], scale: 0.8}
 )yaml",
-     1e-3, &EnergyBudget::contact_loss},
+     2e-4, &EnergyBudget::contact_loss},
     {"node pairs: slip without springs", R"yaml(
 time: {end: 0.2, safety: 0.3}
 contact: {method: node_pair, friction: 0.3, node_pair: {friction_law: slip}}
@@ -162,7 +162,7 @@ grains:
   - {shape: disk, material: rubber, position: [2.55, 1], wall: true}
   - {shape: disk, material: rubber, position: [2.1, 1.95], velocity: [0, -2]}
 )yaml",
-     1.5e-3, &EnergyBudget::contact_loss},
+     5e-4, &EnergyBudget::contact_loss},
 };
 
 }  // namespace
@@ -260,13 +260,13 @@ grains:
   - {shape: ball, material: rubber, position: [1.5, 2, 0.6], velocity: [1, 0, -2], spin: [1, 2, 3]}
   - {shape: ball, material: rubber, position: [2.6, 2.2, 0.7], velocity: [-1, 0, -2]}
 )yaml");
-    CHECK(space.summary.residual_relative < 3e-4);  // measured 7.4e-5, bound 3e-4
+    CHECK(space.summary.residual_relative < 1e-3);  // measured 3.4e-4, bound 1e-3
     CHECK(space.summary.energy.friction > 0.0);
     CHECK(space.summary.momentum_error_angular < 1e-12);  // measured 1.3e-15, bound 1e-12
     const RunRecord broken =
         run_text(unequal_deck, {"contact.method=node_pair", "time.safety=0.3", "time.end=0.2"});
     CHECK(broken.summary.energy.fracture > 0.0);
-    CHECK(broken.summary.residual_relative < 4e-3);  // measured 1.4e-3, bound 4e-3
+    CHECK(broken.summary.residual_relative < 6e-3);  // measured 2.0e-3, bound 6e-3
 }
 
 TEST_CASE("Energy: the faces of a crack carry load again when they are pressed together") {
@@ -287,7 +287,7 @@ grains: [{shape: bar, material: brittle, position: [3, 1]}]
     const RunRecord with = run_text(bar);
     const RunRecord without = run_text(replaced(bar, "self_contact: true", "self_contact: false"));
     CHECK(with.summary.energy.fracture > 0.0);
-    CHECK(with.summary.residual_relative < 1.5e-3);  // measured 4.5e-4, bound 1.5e-3
+    CHECK(with.summary.residual_relative < 4e-3);  // measured 1.2e-3, bound 4e-3
     CHECK(with.summary.energy.contact_elastic > 0.0);
     CHECK(without.summary.energy.contact_elastic == 0.0);
     // The ends have come 0.2 m nearer to each other than they began: work that only faces in contact can
