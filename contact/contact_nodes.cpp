@@ -245,6 +245,7 @@ void ContactNodes<Dim>::list_candidates(const ContactScene<Dim>& scene, int g, S
         const bool on_surface =
             next_surface < static_cast<std::int32_t>(surface.size()) && surface[next_surface].node == i;
         const Candidate candidate = on_surface ? -1 - next_surface++ : i;
+        if (options_.only_surface && !on_surface) continue;
         const Vec<Dim> in_cells = grid_.in_cells(scene.x[grain.first + i]);
         const IntVec<Dim> cell = CartesianGrid<Dim>::cell(in_cells);
         if (!scratch.near_cell[window.local(cell)]) continue;

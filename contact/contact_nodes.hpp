@@ -31,6 +31,7 @@ namespace quern {
 struct ContactNodeOptions {
     bool all_nodes = false;      ///< every node of every grain is kept (flip coupling)
     bool all_particles = false;  ///< interior particles make contact nodes as well (seed rule)
+    bool only_surface = false;   ///< slots are without interior particles (surface rule)
     double wall_reach = 0.75;    ///< nodes nearer to a wall than this have a slot [h]
     SlotWeights weights;         ///< nodal: slots carry nodal momentum (flip coupling, seed rule)
     double skin = 0.0;           ///< a search lasts until something has moved this far [h]

@@ -15,6 +15,7 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
     // A particle at the wall may be half a cell diagonal from its node, and half a cell deep.
     else if (options.exact_walls)
         nodes.wall_reach = 1.5;
+    nodes.only_surface = options.rule == GridRule::surface && options.exact_walls;
     nodes.weights.nodal = options.coupling == GridCoupling::flip || options.rule == GridRule::seed;
     nodes.weights.interior_weight = options.interior_weight;
     // Only where an impulse needs surfaces that meet can nodes whose surfaces are apart be left out.

@@ -44,19 +44,21 @@ void PairRule<Dim>::add_pair(const ContactNodes<Dim>& nodes, const ContactScene<
         return;
     }
     const SurfaceSide<Dim> of_a = surface_side(nodes, a, scene), of_b = surface_side(nodes, b, scene);
-    if (looks_for<Dim>(of_a, of_b))
-        for_each_owned<Dim>(of_a, nodes.grid(), [&](int surface) {
-            if (const auto contact = meet<Dim>(of_a, surface, of_b))
-                add_row(nodes, scene, dt, row, contact->tile, &*contact, page);
-        });
-    if (looks_for<Dim>(of_b, of_a))
-        for_each_owned<Dim>(of_b, nodes.grid(), [&](int surface) {
-            auto contact = meet<Dim>(of_b, surface, of_a);
+    const auto one_on_other = [&](const SurfaceSide<Dim>& one, const SurfaceSide<Dim>& other, bool swapped) {
+        const bool all = all_look_for<Dim>(one, other);
+        for_each_owned<Dim>(one, nodes.grid(), [&](int surface) {
+            if (!all && !one.footprints->tip(surface)) return;
+            auto contact = meet<Dim>(one, surface, other, reachable_speed_ * dt);
             if (!contact) return;
-            std::swap(contact->a, contact->b);
-            contact->tile.normal = -contact->tile.normal;
+            if (swapped) {
+                std::swap(contact->a, contact->b);
+                contact->tile.normal = -contact->tile.normal;
+            }
             add_row(nodes, scene, dt, row, contact->tile, &*contact, page);
         });
+    };
+    one_on_other(of_a, of_b, false);
+    one_on_other(of_b, of_a, true);
 }
 
 template <int Dim>
@@ -72,8 +74,8 @@ void PairRule<Dim>::add_wall(const ContactNodes<Dim>& nodes, const ContactScene<
     if (options_.exact_walls) {
         const SurfaceSide<Dim> of_a = surface_side(nodes, a, scene);
         for_each_owned<Dim>(of_a, nodes.grid(), [&](int surface) {
-            const SurfaceContact<Dim> contact = meet<Dim>(of_a, surface, plane);
-            add_row(nodes, scene, dt, row, contact.tile, &contact, page);
+            if (const auto contact = meet<Dim>(of_a, surface, plane, reachable_speed_ * dt))
+                add_row(nodes, scene, dt, row, contact->tile, &*contact, page);
         });
         return;
     }
@@ -128,9 +130,8 @@ void PairRule<Dim>::use_patches(const ContactNodes<Dim>& nodes, const ContactSce
     const Vec<Dim> middle = row.point;
     const auto add = [&](int slot, int surface, double to_surface) {
         const SurfaceSide<Dim> of = surface_side(nodes, slot, scene);
-        return patches.add(scene, *of.grain, *of.rotation, *of.footprints, surface,
-                           Vec<Dim>(of.origin + row.point), Vec<Dim>(of.origin + middle + to_surface * row.n),
-                           row.n, !options_.rotation);
+        return patches.add(scene, *of.grain, of.s, *of.footprints, surface, Vec<Dim>(of.origin + row.point),
+                           Vec<Dim>(of.origin + middle + to_surface * row.n), row.n, !options_.rotation);
     };
     const double half_gap = 0.5 * contact.tile.gap;
     row.patch_a = add(row.a, contact.a, -half_gap);
@@ -155,7 +156,8 @@ void PairRule<Dim>::use_patches(const ContactNodes<Dim>& nodes, const ContactSce
 /// Footprints of all shapes, once.
 template <int Dim>
 void PairRule<Dim>::know_surfaces(const ContactScene<Dim>& scene) {
-    if (options_.rule != GridRule::surface && !options_.exact_walls) return;
+    if (!at_surfaces_) return;
+    surface_points_.resize(scene.x.size());
     footprints_of_.resize(scene.grains.size());
     for (std::size_t g = 0; g < scene.grains.size(); ++g) {
         const Shape<Dim>* shape = scene.grains[g].shape;
@@ -207,7 +209,13 @@ double PairRule<Dim>::free_path(std::span<const Slot<Dim>> slots, const ContactS
     return path;
 }
 
-/// Rotations of the grains with slots, and which nodes are awake.
+template <int Dim>
+void PairRule<Dim>::know_surface(const ContactScene<Dim>& scene, int grain) {
+    rotation_[grain] = surface_rotation<Dim>(scene.grains[grain], scene.x);
+    if (at_surfaces_) find_surface<Dim>(scene.grains[grain], rotation_[grain], scene.x, surface_points_);
+}
+
+/// Surfaces of the grains with slots, and which nodes are awake.
 template <int Dim>
 void PairRule<Dim>::choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene) {
     const bool chooses = nodes.chooses();
@@ -215,7 +223,7 @@ void PairRule<Dim>::choose_nodes(ContactNodes<Dim>& nodes, const ContactScene<Di
     parallel::for_each(scene.grains.size(), [&](std::size_t g) {
         const int grain = static_cast<int>(g);
         if (chooses ? nodes.has_sites(grain) : !nodes.slots_of_grain(grain).empty())
-            rotation_[g] = surface_rotation<Dim>(scene.grains[g], scene.x);
+            know_surface(scene, grain);
     });
     if (!chooses) return;
     if (nodes.may_sleep())

@@ -52,7 +52,8 @@ struct PairRow {
 template <int Dim>
 class PairRule {
   public:
-    explicit PairRule(const GridContactOptions& options) : options_(options) {}
+    explicit PairRule(const GridContactOptions& options)
+        : options_(options), at_surfaces_(options.rule == GridRule::surface || options.exact_walls) {}
 
     /// Nodes, slots and rows of this step. Rows that no speed present can close are left out.
     void prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
@@ -87,6 +88,7 @@ class PairRule {
     void use_patches(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                      const SurfaceContact<Dim>& contact, PairRow<Dim>& row, Patches<Dim>& patches) const;
     void know_surfaces(const ContactScene<Dim>& scene);
+    void know_surface(const ContactScene<Dim>& scene, int grain);
     template <class Field>
     Vec<Dim> velocity(const Field& field, const ContactNodes<Dim>& nodes, std::size_t page, int slot,
                       int patch, const Vec<Dim>& r) const;
@@ -99,8 +101,8 @@ class PairRule {
     }
     SurfaceSide<Dim> surface_side(const Slot<Dim>& slot, const ContactScene<Dim>& scene,
                                   const CartesianGrid<Dim>& grid) const {
-        return {&slot,   &scene.grains[slot.grain],     &rotation_[slot.grain], footprints_of_[slot.grain],
-                scene.x, grid.node_position(slot.index)};
+        return {&slot,   &scene.grains[slot.grain], &rotation_[slot.grain],        footprints_of_[slot.grain],
+                scene.x, surface_points_,           grid.node_position(slot.index)};
     }
     TileSide<Dim> side(const Slot<Dim>& slot, const ContactScene<Dim>& scene) const {
         return {&slot, &scene.grains[slot.grain], &rotation_[slot.grain]};
@@ -114,8 +116,10 @@ class PairRule {
     GridContactOptions options_;
     double reachable_speed_ = 0.0;    ///< of one slot against another in this step [m/s]
     std::vector<Mat<Dim>> rotation_;  ///< [n_grains] of grains with slots
+    bool at_surfaces_;                ///< rows at surfaces are made
     std::map<const Shape<Dim>*, std::unique_ptr<Footprints<Dim>>> footprints_;
     std::vector<const Footprints<Dim>*> footprints_of_;  ///< [n_grains]
+    std::vector<Vec<Dim>> surface_points_;               ///< [n] of grains with slots [m]
     std::vector<std::vector<PairRow<Dim>>> rows_;        ///< [n_pages] node after node
     std::vector<Patches<Dim>> patches_;                  ///< [n_pages] of rows at surfaces
     std::vector<PageReport> page_reports_;               ///< [n_pages]

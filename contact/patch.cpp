@@ -20,7 +20,7 @@ double kernel(double z) {
 }  // namespace
 
 template <int Dim>
-int Patches<Dim>::add(const ContactScene<Dim>& scene, const Grain<Dim>& grain, const Mat<Dim>& rotation,
+int Patches<Dim>::add(const ContactScene<Dim>& scene, const Grain<Dim>& grain, std::span<const Vec<Dim>> s,
                       const Footprints<Dim>& footprints, int nearest, const Vec<Dim>& x_c,
                       const Vec<Dim>& foot, const Vec<Dim>& n, bool push_only) {
     const double dx = grain.shape->dx * grain.scale;
@@ -35,8 +35,7 @@ int Patches<Dim>::add(const ContactScene<Dim>& scene, const Grain<Dim>& grain, c
         e.r = scene.x[e.particle] - x_c;
         e.a = 0.0;
         if (neighbour.surface >= 0) {
-            const SurfacePoint<Dim>& point = grain.shape->surface[neighbour.surface];
-            const Vec<Dim> d = e.r + point.delta * grain.scale * (rotation * point.nu);
+            const Vec<Dim> d = s[e.particle] - x_c;
             e.a = kernel((d - n.dot(d) * n).norm() / (push_reach * dx));
             if (neighbour.surface == nearest) e.a = std::max(e.a, least_push);
         }

@@ -57,8 +57,9 @@ struct Patches {
         particles.clear();
     }
     /// Adds the patch of a grain around the point x_c [m] at its surface particle `nearest`; returns its
-    /// number. foot: f [m]; n: unit normal of the contact; `push_only`: no moment is passed on.
-    int add(const ContactScene<Dim>& scene, const Grain<Dim>& grain, const Mat<Dim>& rotation,
+    /// number. s: true surface points [m]; foot: f [m]; n: unit normal of the contact; `push_only`: no moment
+    /// is passed on.
+    int add(const ContactScene<Dim>& scene, const Grain<Dim>& grain, std::span<const Vec<Dim>> s,
             const Footprints<Dim>& footprints, int nearest, const Vec<Dim>& x_c, const Vec<Dim>& foot,
             const Vec<Dim>& n, bool push_only);
 

@@ -15,7 +15,11 @@ constexpr double max_slope = 0.5;
 constexpr double furthest_beside = 1.5;
 /// Least cosine between the normal of a particle and the direction in which it may meet something.
 constexpr double facing = 0.3;
-constexpr double deepest = 2.0;      ///< overlap that is still felt [dx]
+constexpr double deepest = 2.0;  ///< overlap that is still felt [dx]
+/// How far from its own point a particle stands for the surface [dx]. A contact between several particles is
+/// then at one point of all of them; at ends apart it would turn the sweeps against each other.
+template <int Dim>
+constexpr double piece = Dim == 2 ? 0.6 : 0.72;
 constexpr double gap_of_path = 4.0;  ///< both bodies move; the rest is for what a distance does not know
 constexpr double longest_path = 0.1;
 
@@ -45,19 +49,22 @@ int nearest_of(const SurfaceSide<Dim>& B, const Vec<Dim>& s_a) {
     return nearest;
 }
 
+/// No point of A next to s_a is nearer to B than this: surface points of B stand a spacing apart, and b is
+/// the nearest one.
+template <int Dim>
+double least_distance(const SurfaceSide<Dim>& A, const Vec<Dim>& s_a, const SurfaceSide<Dim>& B, int b) {
+    const double dx = std::max(A.dx(), B.dx());
+    return std::sqrt(std::max((B.on_surface(b) - s_a).squaredNorm() - dx * dx, 0.0));
+}
+
 /// Where two heights come closest over what a particle of A stands for.
 template <int Dim>
-Tangential<Dim> closest(const Height<Dim>& A, const Height<Dim>& B, double half) {
+Tangential<Dim> closest(const Height<Dim>& A, const Height<Dim>& B, double reach) {
     const double curvature = A.kappa + B.kappa;
-    const Tangential<Dim> slope = A.c1 - B.c1;
-    Tangential<Dim> t;
-    for (int a = 0; a < Dim - 1; ++a) {
-        if (curvature > 0.0)
-            t[a] = std::clamp(slope[a] / curvature, -half, half);
-        else  // two planes, or a hollow that is no wider: the particle itself
-            t[a] = 0.0;
-    }
-    return t;
+    // Two planes, or a hollow that is no wider: the particle itself.
+    if (!(curvature > 0.0)) return Tangential<Dim>::Zero();
+    const Tangential<Dim> t = (A.c1 - B.c1) / curvature;
+    return t * std::min(1.0, reach / std::max(t.norm(), 1e-9 * reach));
 }
 
 template <int Dim>
@@ -89,7 +96,7 @@ std::optional<Tile<Dim>> meet_piece(const SurfaceSide<Dim>& A, int a, const Surf
         const auto y_a = fit_height<Dim>(A, a, s_a, n, 1.0, pass > 0 ? &level_a : nullptr);
         const auto y_b = fit_height<Dim>(B, b, s_a, n, -1.0, pass > 0 ? &level_b : nullptr);
         if (!y_a || !y_b) return std::nullopt;
-        const Tangential<Dim> t = closest<Dim>(*y_a, *y_b, 0.5 * A.dx());
+        const Tangential<Dim> t = closest<Dim>(*y_a, *y_b, piece<Dim> * A.dx());
         const double at_a = height_at<Dim>(*y_a, t, 1.0), at_b = height_at<Dim>(*y_b, t, -1.0);
         tile.normal = n;
         tile.gap = at_b - at_a;
@@ -153,8 +160,7 @@ std::optional<Height<Dim>> fit_height(const SurfaceSide<Dim>& side, int nearest,
     Eigen::Matrix<double, Dim - 1, Dim - 1> tt = Eigen::Matrix<double, Dim - 1, Dim - 1>::Zero();
     for (const Neighbour& neighbour : side.footprints->around(nearest)) {
         if (!neighbour.beside) continue;
-        const Vec<Dim> d = side.x[side.grain->first + neighbour.node] - x_centre +
-                           side.depth(neighbour.surface) * side.normal(neighbour.surface);
+        const Vec<Dim> d = side.s[side.grain->first + neighbour.node] - x_centre;
         const Tangential<Dim> t = T.transpose() * d / dx;
         const double z = 1.0 - t.squaredNorm() / (fit_reach * fit_reach);
         if (neighbour.surface == nearest && t.norm() > furthest_beside) return std::nullopt;
@@ -178,10 +184,12 @@ std::optional<Height<Dim>> fit_height(const SurfaceSide<Dim>& side, int nearest,
 }
 
 template <int Dim>
-std::optional<SurfaceContact<Dim>> meet(const SurfaceSide<Dim>& A, int a, const SurfaceSide<Dim>& B) {
+std::optional<SurfaceContact<Dim>> meet(const SurfaceSide<Dim>& A, int a, const SurfaceSide<Dim>& B,
+                                        double reach) {
     const Tip<Dim>* tip = A.footprints->tip(a);
-    const int b = nearest_of<Dim>(B, tip ? A.place(a, *tip) : A.on_surface(a));
-    if (b < 0) return std::nullopt;
+    const Vec<Dim> s_a = tip ? A.place(a, *tip) : A.on_surface(a);
+    const int b = nearest_of<Dim>(B, s_a);
+    if (b < 0 || least_distance<Dim>(A, s_a, B, b) > reach) return std::nullopt;
     const Vec<Dim> n_a = tip ? Vec<Dim>(*A.rotation * tip->normal) : A.normal(a), n_b = B.normal(b);
     const bool sharp_b = B.footprints->sharp(b);
     std::optional<Tile<Dim>> tile;
@@ -201,7 +209,10 @@ std::optional<SurfaceContact<Dim>> meet(const SurfaceSide<Dim>& A, int a, const 
 }
 
 template <int Dim>
-SurfaceContact<Dim> meet(const SurfaceSide<Dim>& A, int a, const Wall<Dim>& wall) {
+std::optional<SurfaceContact<Dim>> meet(const SurfaceSide<Dim>& A, int a, const Wall<Dim>& wall,
+                                        double reach) {
+    // Nothing of what a particle stands for is nearer than its own point by more.
+    if (wall.distance(A.origin + A.on_surface(a)) - A.dx() > reach) return std::nullopt;
     SurfaceContact<Dim> contact;
     contact.a = a;
     contact.b = -1;
@@ -215,7 +226,7 @@ SurfaceContact<Dim> meet(const SurfaceSide<Dim>& A, int a, const Wall<Dim>& wall
         const Vec<Dim> level =
             tangents<Dim>(tile.normal) * apex<Dim>(y_a, Tangential<Dim>::Zero(), 1.0, A.dx());
         y_a = fit_height<Dim>(A, a, s_a, tile.normal, 1.0, &level).value_or(y_a);
-        const Tangential<Dim> t = closest<Dim>(y_a, plane, 0.5 * A.dx());
+        const Tangential<Dim> t = closest<Dim>(y_a, plane, piece<Dim> * A.dx());
         tile.point = s_a + tangents<Dim>(tile.normal) * t + height_at<Dim>(y_a, t, 1.0) * tile.normal;
     } else {
         const Tip<Dim>* tip = A.footprints->tip(a);
@@ -227,47 +238,82 @@ SurfaceContact<Dim> meet(const SurfaceSide<Dim>& A, int a, const Wall<Dim>& wall
 }
 
 template <int Dim>
-bool looks_for(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B) {
+bool all_look_for(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B) {
     constexpr double as_fine = 1.0 + 1e-9;
-    return !A.smooth() || !B.smooth() || A.dx() <= as_fine * B.dx();
+    if (A.dx() > as_fine * B.dx()) return false;
+    if (B.dx() > as_fine * A.dx()) return true;
+    const Vec<Dim> x_a = A.x[A.grain->first] - A.origin, x_b = B.x[B.grain->first] - B.origin;
+    return std::lexicographical_compare(x_a.data(), x_a.data() + Dim, x_b.data(), x_b.data() + Dim);
 }
 
 template <int Dim>
-double surface_free_path(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B, double h) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < A.slot->n_support; ++k) {
-        const int a = A.slot->support[k].surface;
-        if (a < 0) continue;
-        const Vec<Dim> s_a = A.on_surface(a);
-        const int b = nearest_of<Dim>(B, s_a);
-        if (b < 0) break;
-        least = std::min(least, (B.on_surface(b) - s_a).squaredNorm());
+void find_surface(const Grain<Dim>& grain, const Mat<Dim>& rotation, std::span<const Vec<Dim>> x,
+                  std::span<Vec<Dim>> s) {
+    for (const SurfacePoint<Dim>& point : grain.shape->surface) {
+        const int p = grain.first + point.node;
+        s[p] = x[p] + point.delta * grain.scale * (rotation * point.nu);
     }
-    if (!std::isfinite(least)) return std::max(A.slot->away, B.slot->away);
-    const double dx = std::max(A.dx(), B.dx());
-    return std::min(std::sqrt(std::max(least - dx * dx, 0.0)) / (gap_of_path * h), longest_path);
+}
+
+namespace {
+
+/// Calls visit(surface) for the particles of a side that may belong to its node before the longest path.
+template <int Dim, class Visit>
+void for_each_near(const SurfaceSide<Dim>& side, double h, Visit&& visit) {
+    for (int k = 0; k < side.slot->n_support; ++k) {
+        const Support<Dim>& e = side.slot->support[k];
+        if (e.surface < 0) continue;
+        if (side.on_surface(e.surface).cwiseAbs().maxCoeff() <= (0.5 + longest_path) * h) visit(e.surface);
+    }
+}
+
+}  // namespace
+
+template <int Dim>
+double surface_free_path(const SurfaceSide<Dim>& A, const SurfaceSide<Dim>& B, double h) {
+    double least = gap_of_path * longest_path * h;
+    const auto one_on_other = [&](const SurfaceSide<Dim>& one, const SurfaceSide<Dim>& other) {
+        const bool all = all_look_for<Dim>(one, other);
+        for_each_near<Dim>(one, h, [&](int surface) {
+            if (!all && !one.footprints->tip(surface)) return;
+            const int nearest = nearest_of<Dim>(other, one.on_surface(surface));
+            if (nearest < 0) return;
+            double gap = least_distance<Dim>(one, one.on_surface(surface), other, nearest);
+            if (gap >= least) return;
+            // Only of round ones a fit knows more than the distance of two particles.
+            if (one.smooth() && other.smooth())
+                if (const auto contact = meet<Dim>(one, surface, other, least))
+                    gap = std::max(gap, contact->tile.gap);
+            least = std::min(least, gap);
+        });
+    };
+    one_on_other(A, B);
+    one_on_other(B, A);
+    return std::max(least, 0.0) / (gap_of_path * h);
 }
 
 template <int Dim>
 double surface_free_path(const SurfaceSide<Dim>& A, const Wall<Dim>& wall, double h) {
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < A.slot->n_support; ++k)
-        if (const int a = A.slot->support[k].surface; a >= 0)
-            least = std::min(least, meet<Dim>(A, a, wall).tile.gap);
-    if (!std::isfinite(least)) return A.slot->away;
-    return std::min(std::max(least, 0.0) / (2.0 * h), longest_path);
+    double least = 2.0 * longest_path * h;
+    for_each_near<Dim>(A, h, [&](int surface) {
+        if (const auto contact = meet<Dim>(A, surface, wall, least))
+            least = std::min(least, contact->tile.gap);
+    });
+    return std::max(least, 0.0) / (2.0 * h);
 }
 
 template std::optional<Height<2>> fit_height<2>(const SurfaceSide<2>&, int, const Vec<2>&, const Vec<2>&,
                                                 double, const Vec<2>*);
 template std::optional<Height<3>> fit_height<3>(const SurfaceSide<3>&, int, const Vec<3>&, const Vec<3>&,
                                                 double, const Vec<3>*);
-template std::optional<SurfaceContact<2>> meet<2>(const SurfaceSide<2>&, int, const SurfaceSide<2>&);
-template std::optional<SurfaceContact<3>> meet<3>(const SurfaceSide<3>&, int, const SurfaceSide<3>&);
-template SurfaceContact<2> meet<2>(const SurfaceSide<2>&, int, const Wall<2>&);
-template SurfaceContact<3> meet<3>(const SurfaceSide<3>&, int, const Wall<3>&);
-template bool looks_for<2>(const SurfaceSide<2>&, const SurfaceSide<2>&);
-template bool looks_for<3>(const SurfaceSide<3>&, const SurfaceSide<3>&);
+template std::optional<SurfaceContact<2>> meet<2>(const SurfaceSide<2>&, int, const SurfaceSide<2>&, double);
+template std::optional<SurfaceContact<3>> meet<3>(const SurfaceSide<3>&, int, const SurfaceSide<3>&, double);
+template std::optional<SurfaceContact<2>> meet<2>(const SurfaceSide<2>&, int, const Wall<2>&, double);
+template std::optional<SurfaceContact<3>> meet<3>(const SurfaceSide<3>&, int, const Wall<3>&, double);
+template bool all_look_for<2>(const SurfaceSide<2>&, const SurfaceSide<2>&);
+template void find_surface<2>(const Grain<2>&, const Mat<2>&, std::span<const Vec<2>>, std::span<Vec<2>>);
+template void find_surface<3>(const Grain<3>&, const Mat<3>&, std::span<const Vec<3>>, std::span<Vec<3>>);
+template bool all_look_for<3>(const SurfaceSide<3>&, const SurfaceSide<3>&);
 template double surface_free_path<2>(const SurfaceSide<2>&, const SurfaceSide<2>&, double);
 template double surface_free_path<3>(const SurfaceSide<3>&, const SurfaceSide<3>&, double);
 template double surface_free_path<2>(const SurfaceSide<2>&, const Wall<2>&, double);

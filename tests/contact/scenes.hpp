@@ -164,20 +164,22 @@ std::vector<Aim<Dim>> aims(int n) {
     return list;
 }
 
-/// Two equal round grains on a line, `gap` [m] apart, moving towards each other at `speed` each; positive
-/// `slip` moves them along a tangent in opposite directions.
+/// Two round grains, the second `ratio` as large as the first, on a line, `gap` [m] apart, moving towards
+/// each other at `speed` each; positive `slip` moves them along a tangent in opposite directions.
 template <int Dim>
 World<Dim> make_pair_of_grains(const Shape<Dim>& shape, const Aim<Dim>& aim, double gap, double speed,
-                               double slip = 0.0) {
+                               double slip = 0.0, double ratio = 1.0) {
     const double h = 2.0 * shape.dx;
     World<Dim> world(make_grid<Dim>(h));
     const Vec<Dim> middle = h * (Vec<Dim>::Constant(16.0) + aim.shift);
     Vec<Dim> tangent = Vec<Dim>::Unit(0) - aim.direction[0] * aim.direction;
     if (tangent.norm() < 0.1) tangent = Vec<Dim>::Unit(1) - aim.direction[1] * aim.direction;
     tangent.normalize();
-    const Vec<Dim> arm = (radius + 0.5 * gap) * aim.direction;
-    world.add(shape, middle - arm, speed * aim.direction + slip * tangent);
-    world.add(shape, middle + arm, -speed * aim.direction - slip * tangent);
+    Placement<Dim> second;
+    second.scale = ratio;
+    const auto arm = [&](double r) { return Vec<Dim>((r + 0.5 * gap) * aim.direction); };
+    world.add(shape, middle - arm(radius), speed * aim.direction + slip * tangent);
+    world.add(shape, middle + arm(ratio * radius), -speed * aim.direction - slip * tangent, second);
     return world;
 }
 

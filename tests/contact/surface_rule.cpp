@@ -10,16 +10,19 @@ namespace quern::test {
 
 namespace {
 
+constexpr double anywhere = std::numeric_limits<double>::infinity();
+
 /// Surfaces of the grains of a world at its contact nodes.
 template <int Dim>
 class Surfaces {
   public:
     explicit Surfaces(const World<Dim>& world)
-        : world_(world), scene_(world.scene()), nodes_(world.grid, {}) {
+        : world_(world), scene_(world.scene()), nodes_(world.grid, {}), points_(world.particles.x) {
         fill_all(nodes_, scene_);
         for (const Grain<Dim>& grain : world.grains) {
             rotations_.push_back(surface_rotation<Dim>(grain, world.particles.x));
             footprints_.emplace_back(*grain.shape);
+            find_surface<Dim>(grain, rotations_.back(), world.particles.x, points_);
         }
     }
     SurfaceSide<Dim> side(const Slot<Dim>& slot) const {
@@ -28,6 +31,7 @@ class Surfaces {
                 &rotations_[slot.grain],
                 &footprints_[slot.grain],
                 world_.particles.x,
+                points_,
                 world_.grid.node_position(slot.index)};
     }
     /// visit(contact, A, B) of all surface particles of `from` on the other grain.
@@ -39,7 +43,7 @@ class Surfaces {
                     if (a == b || nodes_.slots()[a].grain != from) continue;
                     const SurfaceSide<Dim> A = side(nodes_.slots()[a]), B = side(nodes_.slots()[b]);
                     for_each_owned<Dim>(A, world_.grid, [&](int surface) {
-                        if (const auto contact = meet<Dim>(A, surface, B)) visit(*contact, A, B);
+                        if (const auto contact = meet<Dim>(A, surface, B, anywhere)) visit(*contact, A, B);
                     });
                 }
     }
@@ -47,8 +51,9 @@ class Surfaces {
     void for_each_wall_contact(Visit&& visit) const {
         for (const Slot<Dim>& slot : nodes_.slots()) {
             const SurfaceSide<Dim> A = side(slot);
-            for_each_owned<Dim>(A, world_.grid,
-                                [&](int surface) { visit(meet<Dim>(A, surface, world_.walls[0]), A); });
+            for_each_owned<Dim>(A, world_.grid, [&](int surface) {
+                visit(*meet<Dim>(A, surface, world_.walls[0], anywhere), A);
+            });
         }
     }
     double least_gap(int from) const {
@@ -64,6 +69,7 @@ class Surfaces {
     const World<Dim>& world_;
     ContactScene<Dim> scene_;
     ContactNodes<Dim> nodes_;
+    std::vector<Vec<Dim>> points_;
     std::vector<Mat<Dim>> rotations_;
     std::vector<Footprints<Dim>> footprints_;
 };
@@ -222,14 +228,15 @@ TEST_CASE("Patch: momentum and moment arrive whole, velocity is the adjoint, W i
         world.add(filling.shape, Vec<Dim>::Constant(2.0), Vec<Dim>::Zero());
         const ContactScene<Dim> scene = world.scene();
         const Footprints<Dim> footprints(filling.shape);
-        const Mat<Dim> rotation = Mat<Dim>::Identity();
+        std::vector<Vec<Dim>> points = world.particles.x;
+        find_surface<Dim>(world.grains[0], Mat<Dim>::Identity(), world.particles.x, points);
         double linear = 0.0, angular = 0.0, power = 0.0, mass = 0.0;
         for (std::size_t s = 0; s < filling.shape.surface.size(); s += 5) {
             const SurfacePoint<Dim>& point = filling.shape.surface[s];
             const Vec<Dim> x_c =
                 Vec<Dim>::Constant(2.0) + filling.shape.X[point.node] + (point.delta + 0.02) * point.nu;
             Patches<Dim> patches;
-            const int number = patches.add(scene, world.grains[0], rotation, footprints, static_cast<int>(s),
+            const int number = patches.add(scene, world.grains[0], points, footprints, static_cast<int>(s),
                                            x_c, x_c, point.nu, false);
             REQUIRE(patches.patches[number].rotates);
             std::vector<Vec<Dim>> v;
