@@ -216,12 +216,14 @@ Chart corrections(Report& report) {
          {"breaks_in=tension", "volume_correction=none", "constants=plane", "damping=nodes",
           "stiffness=layer", "radius=surface"}},
         {"plane strain, grid contact",
-         {"constants=plane", "volume_correction=none", "method=grid", "density_bottom=1.2e9", "t_end=22 ms"}},
+         {"constants=plane", "volume_correction=none", "method=grid", "t_end=22 ms"}},
+        {"plane strain, grid contact, surfaces",
+         {"constants=plane", "volume_correction=none", "method=grid", "rule=surface", "t_end=22 ms"}},
         {"half the step", {"step=0.1 us"}}};
     double as_published = 0.0;
     for (const auto& [name, params] : rows)
         for (const double restitution : {0.95, 1.0}) {
-            const bool dashpots = name != "plane strain, grid contact";
+            const bool dashpots = name.find("grid") == std::string::npos;
             if (!dashpots && restitution < 1.0) continue;
             const Bounce b = report.run({"M1, M1: " + name, restitution, params});
             if (restitution == 1.0 && dashpots) continue;

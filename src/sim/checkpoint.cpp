@@ -33,9 +33,7 @@ void pass_contact(Checkpoint& checkpoint, Scene<Dim>& scene) {
     checkpoint.vector("wall velocity before", memory.wall_velocity);
     if (!checkpoint.loading()) return;
     pairs->recall(memory, scene.particles.x.size());
-    const ContactScene<Dim> view{scene.grains,           scene.particles.x, scene.particles.mass,
-                                 scene.particles.volume, scene.walls,       &scene.friction,
-                                 scene.travelled};
+    const ContactScene<Dim> view = scene.contact_scene();
     for (std::size_t g = 0; g < scene.torn.size(); ++g) {
         const int grain = static_cast<int>(g);
         std::vector<BrokenBond> broken = scene.broken_bonds(grain);

@@ -176,6 +176,11 @@ class Run {
         if (dt > summary_.stable_step)
             warn(fmt::format("time.step {:.4g} s is above the stable step {:.4g} s", dt,
                              summary_.stable_step));
+        if (scene_->held_in_part > 0)
+            warn(fmt::format(
+                "{} particles are held along some axes only: contact on the grid gives way there as "
+                "if they were free; hold all axes, or make them dense",
+                scene_->held_in_part));
     }
 
     void host_line() {

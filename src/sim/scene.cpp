@@ -339,6 +339,26 @@ void add_loads_and_constraints(const Deck& deck, Scene<Dim>& scene) {
     }
 }
 
+/// Contact on the grid solves for velocities before constraints are put back: it must know what they hold.
+/// A particle that is free along some axis keeps its mass.
+template <int Dim>
+void weigh_held_particles(Scene<Dim>& scene) {
+    if (scene.constraints.empty() || !scene.contact ||
+        !std::holds_alternative<GridContact<Dim>>(*scene.contact))
+        return;
+    std::vector<std::array<bool, Dim>> held(static_cast<std::size_t>(scene.particles.size()));
+    for (const Constraint<Dim>& constraint : scene.constraints)
+        for (const int p : constraint.particles)
+            for (int k = 0; k < Dim; ++k)
+                if (constraint.velocity[k]) held[p][k] = true;
+    scene.contact_mass = scene.particles.mass;
+    for (std::size_t p = 0; p < held.size(); ++p) {
+        const auto n_axes = std::count(held[p].begin(), held[p].end(), true);
+        if (n_axes == Dim) scene.contact_mass[p] *= held_heavier;
+        if (n_axes > 0 && n_axes < Dim) ++scene.held_in_part;
+    }
+}
+
 }  // namespace
 
 template <int Dim>
@@ -394,6 +414,13 @@ double Scene<Dim>::elastic_energy() const {
             },
             group.model);
     return energy;
+}
+
+template <int Dim>
+ContactScene<Dim> Scene<Dim>::contact_scene() const {
+    return {grains,           particles.x, contact_mass.empty() ? particles.mass : contact_mass,
+            particles.volume, walls,       &friction,
+            travelled};
 }
 
 template <int Dim>
@@ -455,6 +482,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     scene->gravity = vec<Dim>(deck.gravity);
     scene->mass_damping = deck.mass_damping;
     add_loads_and_constraints(deck, *scene);
+    weigh_held_particles(*scene);
     return scene;
 }
 

@@ -95,6 +95,10 @@ struct Scene {
     std::vector<Load<Dim>> loads;
     std::vector<Load<Dim>> prepare_loads;  ///< added to `loads` before the clock starts
     std::vector<Constraint<Dim>> constraints;
+    /// Masses that contact on the grid meets [kg; 2D: kg/m]: what is held on every axis does not give way, so
+    /// it counts `held_heavier` times. Empty: nothing is held.
+    std::vector<double> contact_mass;
+    int held_in_part = 0;  ///< particles held along some axes only, which grid contact takes for free ones
     StepArrays<Dim> arrays;
 
     GrainView<Dim> view(int grain) const;
@@ -102,9 +106,15 @@ struct Scene {
     const MaterialGroup<Dim>& group_of(int grain) const;
     std::vector<BrokenBond> broken_bonds(int grain) const;  ///< ascending
     bool moves_with_grid() const;                           ///< positions move with StepArrays::drift
-    double elastic_energy() const;                          ///< [J; 2D: J/m]
-    double stable_step() const;  ///< largest stable time step, damping and contact included [s]
+    /// What contact reads of it.
+    ContactScene<Dim> contact_scene() const;
+    double elastic_energy() const;  ///< [J; 2D: J/m]
+    double stable_step() const;     ///< largest stable time step, damping and contact included [s]
 };
+
+/// A held particle gives way to a contact by the inverse of this part of what a free one would. Sums over
+/// impulses keep six digits less than round-off.
+inline constexpr double held_heavier = 1e6;
 
 /// Builds the scene of a deck. Throws InputError (grain outside the grid, grains overlapping, material or
 /// shape that cannot be built).

@@ -94,21 +94,27 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
 
 /// Prescribed velocities; the impulse that they take is external. Before contact its work is taken with the
 /// prescribed velocity, which is the final one; what undoes contact on the grid, with the velocity that
-/// contact had left: so the works of both sum to the change of kinetic energy. Springs between nodes are
-/// forces like those inside grains: their works are taken with the final velocities.
+/// contact had left and the mass that it met: so the works of both sum to the change of kinetic energy.
+/// Springs between nodes are forces like those inside grains: their works are taken with the final
+/// velocities.
 template <int Dim>
 void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_contact) {
     const bool springs = scene.contact && std::holds_alternative<NodePairContact<Dim>>(*scene.contact);
+    const std::vector<double>& mass =
+        after_contact && !scene.contact_mass.empty() ? scene.contact_mass : scene.particles.mass;
+    const bool with_grid = after_contact && scene.moves_with_grid();
     for (const Constraint<Dim>& constraint : scene.constraints)
         for (const int p : constraint.particles) {
             Vec<Dim> v = scene.particles.v[p];
             for (int k = 0; k < Dim; ++k)
                 if (constraint.velocity[k])
                     v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
-            const Vec<Dim> dp = scene.particles.mass[p] * (v - scene.particles.v[p]);
+            const Vec<Dim> dp = mass[p] * (v - scene.particles.v[p]);
             const Vec<Dim> v_work = after_contact && !springs ? scene.particles.v[p] : v;
             now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
             scene.particles.v[p] = v;
+            for (int k = 0; k < Dim && with_grid; ++k)
+                if (constraint.velocity[k]) scene.arrays.drift[p][k] = v[k];
             now.largest_speed = std::max(now.largest_speed, v.norm());
             now.ledger.now.impulse += dp;
             now.ledger.now.moment += moment(scene.particles.x[p], dp);
@@ -131,9 +137,7 @@ void hand_over_broken_bonds(Scene<Dim>& scene, const ContactScene<Dim>& view, St
 template <int Dim>
 void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     if (!scene.contact) return;
-    const Particles<Dim>& particles = scene.particles;
-    const ContactScene<Dim> view{scene.grains, particles.x,     particles.mass, particles.volume,
-                                 scene.walls,  &scene.friction, scene.travelled};
+    const ContactScene<Dim> view = scene.contact_scene();
     double fastest = now.largest_speed;
     for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
     hand_over_broken_bonds(scene, view, now);

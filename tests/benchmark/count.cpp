@@ -44,9 +44,7 @@ void count_contact(const std::string& kind, const std::string& name, Stage<Dim>&
     Scene<Dim>& scene = *stage.scene;
     GridContact<Dim> contact(scene.grid, options);
     std::vector<Vec<Dim>> v = scene.particles.v;
-    const ContactScene<Dim> view{scene.grains,           scene.particles.x, scene.particles.mass,
-                                 scene.particles.volume, scene.walls,       &scene.friction,
-                                 scene.travelled};
+    const ContactScene<Dim> view = scene.contact_scene();
     count(kind, name, "particle", scene.particles.size(), [&] {
         std::copy(scene.particles.v.begin(), scene.particles.v.end(), v.begin());
         contact.add_impulses(view, {stage.now.dt, scene.arrays.v_before, v, {}, stage.now.largest_speed});

@@ -15,12 +15,6 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-template <int Dim>
-ContactScene<Dim> view(const Scene<Dim>& scene) {
-    return {scene.grains, scene.particles.x, scene.particles.mass, scene.particles.volume,
-            scene.walls,  &scene.friction,   scene.travelled};
-}
-
 /// One call of the whole contact on a copy of the velocities, and its report.
 template <int Dim>
 class Contact {
@@ -34,8 +28,8 @@ class Contact {
         std::copy(scene.particles.v.begin(), scene.particles.v.end(), v_.begin());
         const auto start = Clock::now();
         const StepContext<Dim>& now = stage_->now;
-        report_ =
-            &contact_.add_impulses(view(scene), {now.dt, scene.arrays.v_before, v_, {}, now.largest_speed});
+        report_ = &contact_.add_impulses(scene.contact_scene(),
+                                         {now.dt, scene.arrays.v_before, v_, {}, now.largest_speed});
         return seconds_since(start);
     }
     const ContactReport<Dim>& report() const { return *report_; }
@@ -97,7 +91,7 @@ void add_slots(const std::shared_ptr<Stage<Dim>>& stage, const std::string& what
     options.skin = skin;
     const auto nodes = std::make_shared<ContactNodes<Dim>>(stage->scene->grid, options);
     const auto fill = [nodes, stage] {
-        const ContactScene<Dim> scene = view(*stage->scene);
+        const ContactScene<Dim> scene = stage->scene->contact_scene();
         nodes->find(scene, 0.0);
         if (nodes->searched()) nodes->choose_all();
         nodes->fill(scene);
@@ -112,9 +106,9 @@ void add_slots(const std::shared_ptr<Stage<Dim>>& stage, const std::string& what
 template <int Dim>
 void add_tiles(const std::shared_ptr<Stage<Dim>>& stage, KernelSet& set) {
     const auto nodes = std::make_shared<ContactNodes<Dim>>(stage->scene->grid, ContactNodeOptions{});
-    nodes->find(view(*stage->scene), 0.0);
+    nodes->find(stage->scene->contact_scene(), 0.0);
     nodes->choose_all();
-    nodes->fill(view(*stage->scene));
+    nodes->fill(stage->scene->contact_scene());
     std::vector<std::pair<int, int>> pairs;
     for (int node = 0; node < nodes->n_nodes(); ++node) {
         const std::span<const int> slots = nodes->slots_of(node);
