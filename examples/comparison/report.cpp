@@ -68,7 +68,7 @@ const std::vector<Case> cases = {
      "settling/settling.yaml",
      "",
      {"params.columns=20", "params.rows=10", "params.t_end=1.5"},
-     "params.cells_per_radius=1,2,3",
+     "params.cells_per_radius=1,1.5,2",
      "params.cells_per_radius=1,2",
      {"params.columns=4", "params.rows=3", "params.t_end=0.4"},
      1},
