@@ -47,55 +47,6 @@ compare: build        ## ways of contact side by side, all decks, three resoluti
 compare-docs:         ## out/comparison into docs/comparison and README.md: tables, pictures
 	examples/comparison/docs.py out/comparison
 
-clang debug asan tsan format check-format clean help
-
-all: build            ## build (PRESET=release): build/release/quern
-
-packages:             ## install missing Debian packages (as root or with sudo)
-	@sh .ci/packages
-
-build: packages
-	@cmake --preset $(PRESET) > build.log 2>&1 || { cat build.log; exit 1; }
-	@rm -f build.log
-	cmake --build --preset $(PRESET) -j $(JOBS)
-
-demo: build           ## the disk on the inclined plane: run, pictures, errors against the rigid disk
-	$(BUILD)/quern run examples/inclined_plane/disk.yaml -o out/demo
-	$(BUILD)/quern render out/demo -o out/demo/disk.png --field von_mises
-	$(BUILD)/inclined_plane_report -o out/inclined_plane
-	@echo "Pictures: out/demo/disk.png and out/inclined_plane/*.png"
-
-test: build           ## build and run all tests
-	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
-
-REVISION = $$(git describe --always --dirty)
-
-bench: build          ## kernels, stages, whole problems: table, out/bench/bench.json, bench.png
-	$(BUILD)/quern_bench -o out/bench --revision "$(REVISION)"
-
-bench-long: build     ## the same with 10^4 and 10^5 disks, 1000 spheres, one and two threads
-	$(BUILD)/quern_bench -o out/bench --long --revision "$(REVISION)"
-
-bench-methods: build   ## contact by all methods against the number of grains, 10^2 to 10^5: out/bench/methods.*
-	$(BUILD)/quern_bench -o out/bench --methods --long --revision "$(REVISION)"
-
-bench-instructions: build  ## instructions counted by callgrind: out/bench/instructions.json
-	tests/benchmark/instructions.py $(BUILD)/quern_count -o out/bench --revision "$(REVISION)"
-
-bench-docs:           ## out/bench into docs/: tables of performance.md, picture
-	tests/benchmark/docs.py out/bench
-
-compare: build        ## ways of contact side by side, all decks, three resolutions: out/comparison
-	$(BUILD)/comparison_report -o out/comparison
-
-compare-docs:         ## out/comparison into docs/comparison: tables, pictures
-	@mkdir -p docs/comparison
-	@for case in out/comparison/*/; do \
-		name=$$(basename $$case); \
-		sed "s/](\(.*\.png\))/]($${name}_\1)/" $$case/comparison.md > docs/comparison/$$name.md; \
-		for picture in $$case/*.png; do cp $$picture docs/comparison/$${name}_$$(basename $$picture); done; \
-	done
-
 clang debug asan tsan:  ## build with another preset
 	$(MAKE) build PRESET=$@
 
