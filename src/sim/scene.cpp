@@ -13,6 +13,7 @@
 #include "particles/strain.hpp"
 #include "src/mesh/make_shape.hpp"
 #include "src/sim/force_plan.hpp"
+#include "src/sim/overlap.hpp"
 
 namespace quern {
 
@@ -166,57 +167,6 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         scene.n_bonds += static_cast<std::int64_t>(n_bonds);
         scene.grain_of_id[static_cast<std::size_t>(id)] = static_cast<int>(scene.grains.size());
         scene.grains.push_back(grain);
-    }
-}
-
-/// Grains that overlap at the start would be thrown apart: surface particles of two grains must not be nearer
-/// than 0.3 spacings.
-template <int Dim>
-void check_overlap(const Deck& deck, const Scene<Dim>& scene) {
-    double cell = 0.0;
-    for (const Grain<Dim>& grain : scene.grains) cell = std::max(cell, 0.3 * grain.shape->dx * grain.scale);
-    struct Point {
-        std::int64_t key;
-        int grain, particle;
-        bool operator<(const Point& other) const { return key < other.key; }
-    };
-    std::array<std::int64_t, Dim> stride;
-    stride[0] = 1;
-    for (int a = 1; a < Dim; ++a)
-        stride[a] =
-            stride[a - 1] * static_cast<std::int64_t>(2.0 * scene.grid.extent().maxCoeff() / cell + 8.0);
-    std::vector<Point> points;
-    for (std::size_t g = 0; g < scene.grains.size(); ++g)
-        for (const SurfacePoint<Dim>& s : scene.grains[g].shape->surface) {
-            const int p = scene.grains[g].first + s.node;
-            std::int64_t key = 0;
-            for (int a = 0; a < Dim; ++a)
-                key += stride[a] * static_cast<std::int64_t>(
-                                       std::floor((scene.particles.x[p][a] - scene.grid.origin()[a]) / cell));
-            points.push_back({key, static_cast<int>(g), p});
-        }
-    std::stable_sort(points.begin(), points.end());
-    const auto spacing = [&](int g) { return scene.grains[g].shape->dx * scene.grains[g].scale; };
-    const auto compare = [&](const Point& a, const Point& b) {
-        if (a.grain <= b.grain) return;
-        const double limit = 0.3 * std::min(spacing(a.grain), spacing(b.grain));
-        if ((scene.particles.x[a.particle] - scene.particles.x[b.particle]).squaredNorm() >= limit * limit)
-            return;
-        const int first = std::min(scene.grains[a.grain].id, scene.grains[b.grain].id);
-        const int second = std::max(scene.grains[a.grain].id, scene.grains[b.grain].id);
-        if (deck.grains[first].wall && deck.grains[second].wall) return;
-        throw InputError(deck.grains[second].place.text(),
-                         fmt::format("grain {} overlapping grain {}", second, first),
-                         "grains apart or just touching", "move one of them");
-    };
-    for (const Point& point : points) {
-        constexpr int n_rows = Dim == 2 ? 3 : 9;  // rows of cells along the first axis
-        for (int row = 0; row < n_rows; ++row) {
-            std::int64_t key = point.key + stride[1] * (row % 3 - 1);
-            if constexpr (Dim == 3) key += stride[2] * (row / 3 - 1);
-            auto it = std::lower_bound(points.begin(), points.end(), Point{key - 1, 0, 0});
-            for (; it != points.end() && it->key <= key + 1; ++it) compare(point, *it);
-        }
     }
 }
 

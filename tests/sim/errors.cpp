@@ -28,6 +28,34 @@ TEST_CASE("Errors: grains that overlap") {
     CHECK_NOTHROW(run_text(replaced(two_disks, "position: [3, 1]", "position: [2.0, 1]")));
 }
 
+TEST_CASE("Errors: grains with particles on their surface may touch, not overlap") {
+    const std::string deck = replaced(
+        replaced(two_disks, "time: {end: 0.05}", "time: {end: 1e-4}\ncontact: {rule: none}"), "shapes:",
+        "shapes:\n  hexagon: {type: regular_polygon, filling: mesh, sides: 6, radius: 0.5, spacing: 0.08}");
+    const auto set = [&](const char* shape, double x, double angle) {
+        const std::string first = "grains.0.shape=hexagon", second = std::string("grains.1.shape=") + shape;
+        return std::vector<std::string>{first,
+                                        second,
+                                        "shapes.disk.filling=mesh",
+                                        "constraints.0.velocity=[0, 0]",
+                                        "grains.1.position=[" + std::to_string(x) + ", 1]",
+                                        "grains.1.angle=" + std::to_string(angle)};
+    };
+    for (int k = 0; k < 8; ++k) {
+        const double angle = 0.3 + 0.13 * k;
+        CAPTURE(angle);
+        CHECK_NOTHROW(run_text(deck, set("disk", 2.0, angle)));  // at a corner of the hexagon
+        for (const double x : {1.0, 1.02, 1.2, 1.5, 1.9})
+            CHECK(
+                contains(message_of<InputError>(deck, set("disk", x, angle)), "grain 1 overlapping grain 0"));
+    }
+    const double pi = 3.14159265;
+    CHECK_NOTHROW(run_text(deck, set("hexagon", 2.0, 0.0)));                               // corner on corner
+    CHECK_NOTHROW(run_text(deck, set("hexagon", 1.5 + 0.5 * std::sqrt(0.75), pi / 6.0)));  // corner on face
+    CHECK(contains(message_of<InputError>(deck, set("hexagon", 1.0, 0.0)), "overlapping"));
+    CHECK(contains(message_of<InputError>(deck, set("hexagon", 1.75, pi / 6.0)), "overlapping"));
+}
+
 TEST_CASE("Errors: grains that stand for walls may overlap each other, not other grains") {
     const std::string walls =
         replaced(replaced(two_disks, "position: [1, 1]", "position: [1, 1], wall: true"), "position: [3, 1]",

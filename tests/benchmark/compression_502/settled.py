@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Where the grains of a run of packed.yaml came to rest, as rows of a deck: settled.py RUN > packed.csv
+"""Where the grains of a run came to rest, as rows of a deck: settled.py RUN [START] > packed.csv
 
-Corners that have sunk into a neighbour by more than 0.02 mm are drawn out of it first.
+START is the table that the run began with; left out: start.csv. Corners that have sunk into a neighbour by more than 0.02 mm are drawn out of it first.
 """
 
 import csv
@@ -51,8 +51,8 @@ def draw_apart(grains):
 
 
 def main():
-    folder = pathlib.Path(__file__).parent
-    with open(folder / "start.csv", encoding="utf-8") as file:
+    table = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else pathlib.Path(__file__).parent / "start.csv"
+    with open(table, encoding="utf-8") as file:
         start = list(csv.DictReader(line for line in file if not line.startswith("#")))
     with open(pathlib.Path(sys.argv[1]) / "grains.csv", encoding="utf-8") as file:
         last = list(csv.DictReader(file))[-len(start):]
@@ -60,7 +60,7 @@ def main():
                "angle": float(end["angle"]) % (2.0 * math.pi)} for row, end in zip(start, last)]
     while draw_apart(grains):
         pass
-    print("# start.csv after a fall, see README.md")
+    print(f"# {table.name} after a fall, see README.md")
     print("shape,material,x,y,scale,angle")
     for g in grains:
         print(f"{g['shape']},{g['shape']},{g['x']:.7f},{g['y']:.7f},{g['scale']:.3f},{g['angle']:.6f}")
