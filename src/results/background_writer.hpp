@@ -16,6 +16,7 @@ namespace quern {
 struct Packet {
     std::vector<HistoryRow> history;
     std::vector<GrainRow> grains;
+    std::vector<ReactionRow> reactions;
     Frame frame;
     bool has_frame = false;
 };

@@ -68,6 +68,17 @@ std::string make_energy(const EnergyBudget& energy, double residual_relative) {
     return block.str();
 }
 
+std::string make_reaction(const ReactionRow& row, int dimension) {
+    const auto vector = [&](const double(&v)[3]) {
+        const std::string plane = fmt::format("[{}, {}", json_number(v[0]), json_number(v[1]));
+        return dimension == 2 ? plane + "]" : fmt::format("{}, {}]", plane, json_number(v[2]));
+    };
+    return fmt::format("{{\"name\": {}, \"displacement\": {}, \"force\": {}, \"moment\": {}, \"work\": {}}}",
+                       json_string(row.name), vector(row.displacement), vector(row.force),
+                       dimension == 2 ? json_number(row.moment[2]) : vector(row.moment),
+                       json_number(row.work));
+}
+
 }  // namespace
 
 std::string json_string(std::string_view text) {
@@ -108,6 +119,9 @@ std::string make_summary_json(const Summary& summary) {
     for (const auto& [text, count] : summary.warnings)
         warnings.add(fmt::format("{{\"text\": {}, \"count\": {}}}", json_string(text), count));
 
+    Block reactions('[', ']', 1);
+    for (const ReactionRow& row : summary.reactions) reactions.add(make_reaction(row, summary.dimension));
+
     Block block('{', '}', 0);
     block.add("version", json_string(summary.version));
     block.add("title", json_string(summary.title));
@@ -130,6 +144,7 @@ std::string make_summary_json(const Summary& summary) {
     block.add("stages", stages.str());
     block.add("writer_seconds", json_number(summary.writer_seconds));
     block.add("contact_per_step", contact.str());
+    block.add("reactions", reactions.str());
     block.add("energy", make_energy(summary.energy, summary.residual_relative));
     block.add("momentum_error", momentum_error.str());
     block.add("warnings", warnings.str());

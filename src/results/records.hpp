@@ -53,6 +53,17 @@ struct GrainRow {
     double force[3] = {0, 0, 0};  ///< contact force, mean since the row before [N]
 };
 
+/// A wall, a constraint, or a held grain with `wall: true`.
+struct ReactionRow {
+    double time = 0;
+    std::string name;                    ///< of the wall, "constraints[0]", "grains[0]"
+    double position[3] = {0, 0, 0};      ///< point of the wall; centre of the particles held [m]
+    double displacement[3] = {0, 0, 0};  ///< since the start [m]
+    double force[3] = {0, 0, 0};         ///< received from the grains, mean since the row before [N]
+    double moment[3] = {0, 0, 0};        ///< of it about the origin [N m]; 2D: component 2
+    double work = 0;                     ///< done on the grains since the start [J]
+};
+
 struct Summary {
     std::string version, title, deck_hash, state_hash,
         outcome,       ///< "done", "interrupted", "failed: ..."
@@ -65,6 +76,7 @@ struct Summary {
     double writer_seconds = 0;                           ///< spent writing, beside the steps
     /// Contact nodes, pairs with a row, sweeps and searches, mean of a step.
     std::vector<std::pair<std::string, double>> contact_per_step;
+    std::vector<ReactionRow> reactions;  ///< at the end
     EnergyBudget energy;
     double residual_relative = 0;      ///< |residual| / throughput, largest over the run
     double momentum_error_linear = 0;  ///< |p - p0 - impulses| / momentum scale, largest over the run
@@ -75,7 +87,7 @@ struct Summary {
 /// How far the files of a run have come: what lies behind is not of a run that goes on from here.
 struct ResultPosition {
     std::int64_t n_frames = 0;
-    std::int64_t history_bytes = 0, grains_bytes = 0;
+    std::int64_t history_bytes = 0, grains_bytes = 0, reactions_bytes = 0;
     std::int64_t xdmf_bytes = 0, pvd_bytes = 0;  ///< without the closing tags
 };
 

@@ -23,6 +23,14 @@ std::string cells(const double (&vector)[3], int dimension) {
                           : fmt::format(",{},{},{}", vector[0], vector[1], vector[2]);
 }
 
+/// In quotes where it has to be.
+std::string csv_text(const std::string& text) {
+    if (text.find_first_of("\",\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
+}
+
 /// Rows that are handed over without waiting for a frame.
 constexpr std::size_t long_packet = 4096;
 
@@ -72,6 +80,11 @@ std::vector<std::string> grain_columns(int dimension) {
     return {"time", "grain", "x", "y", "z", "vx", "vy", "vz", "angle", "omega", "fx", "fy", "fz"};
 }
 
+std::vector<std::string> reaction_columns(int dimension) {
+    if (dimension == 2) return {"time", "name", "x", "y", "ux", "uy", "fx", "fy", "moment", "work"};
+    return {"time", "name", "x", "y", "z", "ux", "uy", "uz", "fx", "fy", "fz", "mx", "my", "mz", "work"};
+}
+
 struct ResultWriter::Files {
     explicit Files(const WriterOptions& options)
         : directory(make_run_directory(options)),
@@ -79,12 +92,13 @@ struct ResultWriter::Files {
           log(directory + "/run.log"),
           history(directory + "/history.csv"),
           grains(directory + "/grains.csv"),
+          reactions(directory + "/reactions.csv"),
           frames(directory + "/results.h5", dimension, options.title, options.domain),
           xdmf(directory + "/results.xdmf", dimension) {
         history.write(header(history_columns(dimension)));
         grains.write(header(grain_columns(dimension)));
-        history.flush();
-        grains.flush();
+        reactions.write(header(reaction_columns(dimension)));
+        for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
         if (options.vtp) vtp.emplace(directory);
     }
     Files(const WriterOptions& options, const ResultPosition& position)
@@ -93,6 +107,7 @@ struct ResultWriter::Files {
           log(directory + "/run.log", file_size(directory + "/run.log")),
           history(directory + "/history.csv", position.history_bytes),
           grains(directory + "/grains.csv", position.grains_bytes),
+          reactions(directory + "/reactions.csv", position.reactions_bytes),
           frames(directory + "/results.h5", dimension, position.n_frames),
           xdmf(directory + "/results.xdmf", dimension, position) {
         if (options.vtp) vtp.emplace(directory, position);
@@ -101,10 +116,11 @@ struct ResultWriter::Files {
     void write(const Packet& packet);
     void write(const HistoryRow& row);
     void write(const GrainRow& row);
+    void write(const ReactionRow& row);
 
     std::string directory;
     int dimension;
-    OutputFile log, history, grains;
+    OutputFile log, history, grains, reactions;
     FrameFileWriter frames;
     XdmfFile xdmf;
     std::optional<VtpSeries> vtp;
@@ -155,28 +171,33 @@ void ResultWriter::add_grain(const GrainRow& row) {
     hand_over_if_long();
 }
 
+void ResultWriter::add_reaction(const ReactionRow& row) {
+    packet_.reactions.push_back(row);
+    hand_over_if_long();
+}
+
 void ResultWriter::hand_over_if_long() {
-    if (packet_.history.size() + packet_.grains.size() >= long_packet) hand_over();
+    if (packet_.history.size() + packet_.grains.size() + packet_.reactions.size() >= long_packet) hand_over();
 }
 
 void ResultWriter::hand_over() {
     background_->hand_over(packet_);
     packet_.history.clear();
     packet_.grains.clear();
+    packet_.reactions.clear();
     packet_.has_frame = false;
 }
 
 void ResultWriter::flush() {
     hand_over();
     background_->wait();
-    files_->history.flush();
-    files_->grains.flush();
+    for (OutputFile* table : {&files_->history, &files_->grains, &files_->reactions}) table->flush();
 }
 
 ResultPosition ResultWriter::position() {
     flush();
-    return {files_->frames.n_frames(), files_->history.size(), files_->grains.size(), files_->xdmf.bytes(),
-            files_->vtp ? files_->vtp->bytes() : 0};
+    return {files_->frames.n_frames(), files_->history.size(), files_->grains.size(),
+            files_->reactions.size(),  files_->xdmf.bytes(),   files_->vtp ? files_->vtp->bytes() : 0};
 }
 
 double ResultWriter::busy_seconds() const {
@@ -194,12 +215,12 @@ void ResultWriter::finish(const Summary& summary) {
 void ResultWriter::Files::write(const Packet& packet) {
     for (const HistoryRow& row : packet.history) write(row);
     for (const GrainRow& row : packet.grains) write(row);
+    for (const ReactionRow& row : packet.reactions) write(row);
     if (!packet.has_frame) return;
     frames.add(packet.frame);
     xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty());
     if (vtp) vtp->add(packet.frame);
-    history.flush();
-    grains.flush();
+    for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
 }
 
 void ResultWriter::Files::write(const HistoryRow& row) {
@@ -216,6 +237,13 @@ void ResultWriter::Files::write(const GrainRow& row) {
     const int d = dimension;
     grains.write(fmt::format("{},{}{}{},{},{}{}\n", row.time, row.grain, cells(row.position, d),
                              cells(row.velocity, d), row.angle, row.omega, cells(row.force, d)));
+}
+
+void ResultWriter::Files::write(const ReactionRow& row) {
+    const int d = dimension;
+    reactions.write(fmt::format("{},{}{}{}{}{},{}\n", row.time, csv_text(row.name), cells(row.position, d),
+                                cells(row.displacement, d), cells(row.force, d),
+                                d == 2 ? fmt::format(",{}", row.moment[2]) : cells(row.moment, 3), row.work));
 }
 
 }  // namespace quern

@@ -20,9 +20,10 @@ struct WriterOptions {
     std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
 };
 
-/// Names of the columns of history.csv and grains.csv, in their order.
+/// Names of the columns of history.csv, grains.csv and reactions.csv, in their order.
 std::vector<std::string> history_columns(int dimension);
 std::vector<std::string> grain_columns(int dimension);
+std::vector<std::string> reaction_columns(int dimension);
 
 /// Files of one run. Rows and frames are written on a thread of their own, in the order in which they were
 /// added; an add waits only while the frame before is still being written. Any failure to write throws
@@ -40,11 +41,12 @@ class ResultWriter {
 
     /// results.h5, results.xdmf, frames/frame_00000.vtp. Gives back an older frame, for its memory.
     Frame add_frame(Frame frame);
-    void add_history(const HistoryRow& row);  ///< history.csv
-    void add_grain(const GrainRow& row);      ///< grains.csv
-    void flush();                             ///< until all that was added is on disk
-    ResultPosition position();                ///< flushes
-    void finish(const Summary& summary);      ///< summary.json; flushes and closes all, ends the thread
+    void add_history(const HistoryRow& row);    ///< history.csv
+    void add_grain(const GrainRow& row);        ///< grains.csv
+    void add_reaction(const ReactionRow& row);  ///< reactions.csv
+    void flush();                               ///< until all that was added is on disk
+    ResultPosition position();                  ///< flushes
+    void finish(const Summary& summary);        ///< summary.json; flushes and closes all, ends the thread
 
     double busy_seconds() const;  ///< what the thread has spent writing; finish() not yet called [s]
 

@@ -60,7 +60,11 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
     pass_contact(checkpoint, scene);
     pass_ledger(checkpoint, now.ledger);
     checkpoint.array("grain impulse", std::span(now.grain_impulse));
-    checkpoint.array("wall impulse", std::span(now.wall_impulse));
+    for (Reaction<Dim>& reaction : now.reactions) {
+        checkpoint.value("reaction impulse", reaction.impulse);
+        checkpoint.value("reaction moment", reaction.moment);
+        checkpoint.value("reaction work", reaction.work);
+    }
     checkpoint.value("unconverged", now.unconverged);
     checkpoint.value("first unconverged", now.first_unconverged);
     checkpoint.value("newly broken", now.newly_broken);
@@ -99,6 +103,7 @@ void pass_position(Checkpoint& checkpoint, ResultPosition& position) {
     checkpoint.value("frames", position.n_frames);
     checkpoint.value("history bytes", position.history_bytes);
     checkpoint.value("grains bytes", position.grains_bytes);
+    checkpoint.value("reactions bytes", position.reactions_bytes);
     checkpoint.value("xdmf bytes", position.xdmf_bytes);
     checkpoint.value("pvd bytes", position.pvd_bytes);
 }

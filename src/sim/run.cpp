@@ -20,6 +20,7 @@
 #include "src/results/writer.hpp"
 #include "src/sim/checkpoint.hpp"
 #include "src/sim/observe.hpp"
+#include "src/sim/reactions.hpp"
 #include "src/sim/step.hpp"
 
 namespace quern {
@@ -208,6 +209,7 @@ class Run {
             const FrictionTable friction = scene_->friction;
             const std::vector<Wall<Dim>> walls = scene_->walls;
             const auto wall_velocity = scene_->wall_velocity;
+            const std::vector<Constraint<Dim>> constraints = scene_->constraints;
             const std::vector<Load<Dim>> loads = scene_->loads;
             scene_->loads.insert(scene_->loads.end(), scene_->prepare_loads.begin(),
                                  scene_->prepare_loads.end());
@@ -222,6 +224,9 @@ class Run {
             if (deck_.prepare.friction)
                 scene_->friction =
                     FrictionTable(static_cast<int>(deck_.materials.size()), *deck_.prepare.friction);
+            for (Constraint<Dim>& constraint : scene_->constraints)
+                for (auto& velocity : constraint.velocity)
+                    if (velocity) velocity = Expression();
             const auto steps = static_cast<std::int64_t>(std::ceil(deck_.prepare.duration / now_.dt));
             Progress progress(options_.progress_terminal, deck_.prepare.duration,
                               [&](const std::string& line) { writer_->log("prepare: " + line); });
@@ -238,19 +243,14 @@ class Run {
             scene_->loads = loads;
             scene_->walls = walls;
             scene_->wall_velocity = wall_velocity;
+            scene_->constraints = constraints;
         }
         set_initial_velocities(deck_, *scene_);
         reset_context();
         scene_->x_start = scene_->particles.x;
     }
 
-    void reset_context() {
-        StepContext<Dim> fresh;
-        fresh.dt = now_.dt;
-        fresh.grain_impulse.assign(scene_->grains.size(), Vec<Dim>::Zero());
-        fresh.wall_impulse.assign(scene_->walls.size(), Vec<Dim>::Zero());
-        now_ = fresh;
-    }
+    void reset_context() { now_ = make_context(*scene_, now_.dt); }
 
     RunOutcome march() {
         Progress progress(options_.progress_terminal, deck_.time.end,
@@ -289,6 +289,11 @@ class Run {
         for (const GrainRow& grain : tracker_->rows(*scene_, now_, elapsed)) {
             writer_->add_grain(grain);
             if (record_) record_->grains.push_back(grain);
+        }
+        summary_.reactions = reaction_rows(deck_, *scene_, now_, elapsed);
+        for (const ReactionRow& reaction : summary_.reactions) {
+            writer_->add_reaction(reaction);
+            if (record_) record_->reactions.push_back(reaction);
         }
         summary_.energy = row.energy;
         summary_.residual_relative = observer_.residual_relative();

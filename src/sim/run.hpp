@@ -19,7 +19,8 @@ struct RunOptions {
 struct RunRecord {
     Summary summary;
     std::vector<HistoryRow> history;
-    std::vector<GrainRow> grains;  ///< as in grains.csv: by time, tracked grains in the deck's order
+    std::vector<GrainRow> grains;        ///< as in grains.csv: by time, tracked grains in the deck's order
+    std::vector<ReactionRow> reactions;  ///< as in reactions.csv
 };
 
 enum class RunOutcome { done, interrupted };

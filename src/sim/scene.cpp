@@ -260,10 +260,26 @@ void add_walls(const Deck& deck, Scene<Dim>& scene) {
         wall.friction = from.friction;
         std::array<Expression, Dim> velocity;
         for (int k = 0; k < Dim && !from.velocity.empty(); ++k) velocity[k] = from.velocity[k];
-        for (int k = 0; k < Dim; ++k) wall.velocity[k] = velocity[k](0.0);
         scene.walls.push_back(wall);
         scene.wall_velocity.push_back(velocity);
     }
+}
+
+template <int Dim>
+void find_held_walls(Scene<Dim>& scene) {
+    std::vector<std::uint8_t> held(static_cast<std::size_t>(scene.particles.size()));
+    for (const Constraint<Dim>& constraint : scene.constraints)
+        for (const int p : constraint.particles) held[p] = 1;
+    std::vector<int> wall_of(held.size(), -1);
+    for (const int g : scene.grain_of_id) {
+        const Grain<Dim>& grain = scene.grains[g];
+        const auto first = held.begin() + grain.first, last = first + grain.count;
+        if (!grain.wall || std::find(first, last, 1) == last) continue;
+        std::fill_n(wall_of.begin() + grain.first, grain.count, static_cast<int>(scene.held_walls.size()));
+        scene.held_walls.push_back(g);
+    }
+    for (Constraint<Dim>& constraint : scene.constraints)
+        for (const int p : constraint.particles) constraint.wall.push_back(wall_of[p]);
 }
 
 template <int Dim>
@@ -287,6 +303,7 @@ void add_loads_and_constraints(const Deck& deck, Scene<Dim>& scene) {
         for (int k = 0; k < Dim; ++k) constraint.velocity[k] = from.velocity[k];
         scene.constraints.push_back(std::move(constraint));
     }
+    find_held_walls(scene);
 }
 
 /// Contact on the grid solves for velocities before constraints are put back: it must know what they hold.
@@ -410,6 +427,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     StepArrays<Dim>& arrays = scene->arrays;
     arrays.internal.resize(n);
     arrays.v_before.resize(n);
+    arrays.wall_v_before.assign(scene->walls.size(), Vec<Dim>::Zero());
     if (!deck.loads.empty() || !deck.prepare.loads.empty()) arrays.load.resize(n);
     if (std::any_of(scene->groups.begin(), scene->groups.end(),
                     [](const auto& group) { return group.damped; }))

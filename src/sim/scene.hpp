@@ -39,6 +39,7 @@ struct Load {
 template <int Dim>
 struct Constraint {
     std::vector<int> particles;
+    std::vector<int> wall;  ///< [particles] place of their grain in Scene::held_walls; -1: it is none
     std::array<std::optional<Expression>, Dim> velocity;  ///< [m/s]
 };
 
@@ -49,6 +50,7 @@ struct StepArrays {
     std::vector<Vec<Dim>> v_before;  ///< velocity half a step back
     std::vector<Vec<Dim>> drift;     ///< flip coupling: velocity that moves positions
     std::vector<Vec<Dim>> drift_before;
+    std::vector<Vec<Dim>> wall_v_before;  ///< [n_walls] velocity half a step back
 };
 
 /// Where a grain's bits are.
@@ -99,6 +101,7 @@ struct Scene {
     /// it counts `held_heavier` times. Empty: nothing is held.
     std::vector<double> contact_mass;
     int held_in_part = 0;  ///< particles held along some axes only, which grid contact takes for free ones
+    std::vector<int> held_walls;  ///< grains with `wall: true` that constraints hold, in the deck's order
     StepArrays<Dim> arrays;
 
     GrainView<Dim> view(int grain) const;

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <limits>
+#include <utility>
 
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
@@ -92,6 +93,31 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     now.largest_speed = std::sqrt(sums.fastest);
 }
 
+template <int Dim>
+bool node_pairs(const Scene<Dim>& scene) {
+    return scene.contact && std::holds_alternative<NodePairContact<Dim>>(*scene.contact);
+}
+
+/// Books what a constraint does to a particle as what the constraint receives.
+template <int Dim>
+void receive(Reaction<Dim>& reaction, const Vec<Dim>& given, const Spin<Dim>& moment, double work) {
+    reaction.impulse -= given;
+    reaction.moment -= moment;
+    reaction.work_now += work;
+}
+
+/// Velocities of the walls at n+1/2.
+template <int Dim>
+void steer_walls(Scene<Dim>& scene, const StepContext<Dim>& now) {
+    const double time = now.time + 0.5 * now.dt;
+    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
+        Wall<Dim>& wall = scene.walls[w];
+        scene.arrays.wall_v_before[w] = wall.velocity;
+        for (int k = 0; k < Dim; ++k) wall.velocity[k] = scene.wall_velocity[w][k](time);
+        if (now.first) scene.arrays.wall_v_before[w] = wall.velocity;
+    }
+}
+
 /// Prescribed velocities; the impulse that they take is external. Before contact its work is taken with the
 /// prescribed velocity, which is the final one; what undoes contact on the grid, with the velocity that
 /// contact had left and the mass that it met: so the works of both sum to the change of kinetic energy.
@@ -99,26 +125,36 @@ void predict(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
 /// velocities.
 template <int Dim>
 void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_contact) {
-    const bool springs = scene.contact && std::holds_alternative<NodePairContact<Dim>>(*scene.contact);
+    const bool springs = node_pairs(scene);
     const std::vector<double>& mass =
         after_contact && !scene.contact_mass.empty() ? scene.contact_mass : scene.particles.mass;
     const bool with_grid = after_contact && scene.moves_with_grid();
-    for (const Constraint<Dim>& constraint : scene.constraints)
-        for (const int p : constraint.particles) {
+    const double time = now.time + 0.5 * now.dt;
+    for (std::size_t c = 0; c < scene.constraints.size(); ++c) {
+        const Constraint<Dim>& constraint = scene.constraints[c];
+        Reaction<Dim>& all = now.reactions[scene.walls.size() + c];
+        for (std::size_t i = 0; i < constraint.particles.size(); ++i) {
+            const int p = constraint.particles[i], w = constraint.wall[i];
             Vec<Dim> v = scene.particles.v[p];
             for (int k = 0; k < Dim; ++k)
                 if (constraint.velocity[k])
-                    v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], now.time);
+                    v[k] = value<Dim>(*constraint.velocity[k], scene.particles.x[p], time);
             const Vec<Dim> dp = mass[p] * (v - scene.particles.v[p]);
             const Vec<Dim> v_work = after_contact && !springs ? scene.particles.v[p] : v;
-            now.ledger.now.constraint += 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
+            const double work = 0.5 * dp.dot(scene.arrays.v_before[p] + v_work);
+            const Spin<Dim> turn = moment(scene.particles.x[p], dp);
             scene.particles.v[p] = v;
             for (int k = 0; k < Dim && with_grid; ++k)
                 if (constraint.velocity[k]) scene.arrays.drift[p][k] = v[k];
             now.largest_speed = std::max(now.largest_speed, v.norm());
+            now.ledger.now.constraint += work;
             now.ledger.now.impulse += dp;
-            now.ledger.now.moment += moment(scene.particles.x[p], dp);
+            now.ledger.now.moment += turn;
+            receive(all, dp, turn, work);
+            if (w >= 0)
+                receive(now.reactions[scene.walls.size() + scene.constraints.size() + w], dp, turn, work);
         }
+    }
 }
 
 /// Tells contact which bonds are gone, of the grains that have lost some, in the order of the grains.
@@ -141,6 +177,7 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     double fastest = now.largest_speed;
     for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
     hand_over_broken_bonds(scene, view, now);
+    const bool springs = node_pairs(scene);
     const ContactTrial<Dim> trial{
         now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first};
     const ContactReport<Dim>& report = std::visit(
@@ -159,7 +196,14 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     for (std::size_t w = 0; w < report.wall_impulse.size(); ++w) {
         entry.impulse -= report.wall_impulse[w];
         entry.moment -= report.wall_moment[w];
-        now.wall_impulse[w] += report.wall_impulse[w];
+        Reaction<Dim>& reaction = now.reactions[w];
+        reaction.impulse += report.wall_impulse[w];
+        reaction.moment += report.wall_moment[w];
+        // The works that contact has summed over the walls: springs act with the mean velocity.
+        const Vec<Dim>& velocity = scene.walls[w].velocity;
+        const Vec<Dim> acting =
+            springs ? Vec<Dim>(0.5 * (scene.arrays.wall_v_before[w] + velocity)) : velocity;
+        reaction.work_now -= report.wall_impulse[w].dot(acting);
     }
     for (std::size_t g = 0; g < report.grain_impulse.size(); ++g)
         now.grain_impulse[g] += report.grain_impulse[g];
@@ -231,8 +275,18 @@ typename Ledger<Dim>::Entry& Ledger<Dim>::Entry::operator+=(const Entry& other) 
 }
 
 template <int Dim>
+StepContext<Dim> make_context(const Scene<Dim>& scene, double dt) {
+    StepContext<Dim> now;
+    now.dt = dt;
+    now.grain_impulse.assign(scene.grains.size(), Vec<Dim>::Zero());
+    now.reactions.resize(scene.walls.size() + scene.constraints.size() + scene.held_walls.size());
+    return now;
+}
+
+template <int Dim>
 void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
     const double dt = now.first ? 0.5 * now.dt : now.dt;
+    steer_walls(scene, now);
     {
         const StageTimer timer(now.stages.internal_forces);
         compute_internal_forces(scene, now);
@@ -285,11 +339,8 @@ void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
     now.ledger.now = {};
     now.time = now.dt * static_cast<double>(++now.step);
     now.first = false;
-    for (std::size_t w = 0; w < scene.walls.size(); ++w) {
-        Wall<Dim>& wall = scene.walls[w];
-        wall.point += now.dt * wall.velocity;
-        for (int k = 0; k < Dim; ++k) wall.velocity[k] = scene.wall_velocity[w][k](now.time);
-    }
+    for (Reaction<Dim>& reaction : now.reactions) reaction.work += std::exchange(reaction.work_now, 0.0);
+    for (Wall<Dim>& wall : scene.walls) wall.point += now.dt * wall.velocity;
     if (const int p = moved.lost; p < particles.size()) {
         std::size_t g = 0;
         while (p >= scene.grains[g].first + scene.grains[g].count) ++g;
@@ -305,6 +356,8 @@ void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
 
 template struct Ledger<2>;
 template struct Ledger<3>;
+template StepContext<2> make_context<2>(const Scene<2>&, double);
+template StepContext<3> make_context<3>(const Scene<3>&, double);
 template void kick<2>(Scene<2>&, StepContext<2>&);
 template void kick<3>(Scene<3>&, StepContext<3>&);
 template void drift<2>(Scene<2>&, StepContext<2>&);

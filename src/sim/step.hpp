@@ -5,7 +5,9 @@
 //     x(n+1)    = x(n) + dt v(n+1/2)                 drift
 //
 // One kick and one drift a step: a body without forces moves by v dt. The clock starts with half a kick, so
-// that the velocity given at t = 0 is that of t = 0.
+// that the velocity given at t = 0 is that of t = 0. Prescribed velocities are taken at t(n+1/2): what they
+// move goes where the formula says, exactly if its velocity is linear in time, else within dt^2 (a(t) -
+// a(0))/24, a acceleration.
 #pragma once
 
 #include <cstdint>
@@ -37,6 +39,17 @@ struct Ledger {
     double contact_elastic = 0;              ///< at time n [J]
 };
 
+/// What a holder (a wall, a constraint, all that holds a grain with `wall: true`) receives from the grains,
+/// and what it does to them. That of a constraint is all that it takes to move the particles as prescribed:
+/// contact, forces inside the body, weight, loads, inertia, with the other sign.
+template <int Dim>
+struct Reaction {
+    Vec<Dim> impulse = Vec<Dim>::Zero();   ///< received since it was last zeroed [N s; 2D: N s/m]
+    Spin<Dim> moment = Spin<Dim>::Zero();  ///< of it about the origin [N m s; 2D: N s]
+    double work = 0.0;                     ///< done on the grains up to n-1/2 [J; 2D: J/m]
+    double work_now = 0.0;                 ///< in the step at hand
+};
+
 template <int Dim>
 struct StepContext {
     double dt = 0.0;
@@ -46,8 +59,9 @@ struct StepContext {
     Ledger<Dim> ledger;
     StageTimes stages;
     std::vector<Vec<Dim>> grain_impulse;  ///< [n_grains] contact impulse since it was last zeroed [N s]
-    std::vector<Vec<Dim>> wall_impulse;   ///< [n_walls]
-    double largest_speed = 0.0;           ///< of the particles, with this step's forces, before contact [m/s]
+    /// Of the walls, the constraints, and the held grains with `wall: true`, in this order.
+    std::vector<Reaction<Dim>> reactions;
+    double largest_speed = 0.0;  ///< of the particles, with this step's forces, before contact [m/s]
     std::int64_t unconverged = 0, first_unconverged = -1;
     /// Searches whose contact springs ask for a smaller step, and the smallest such step [s].
     std::int64_t unstable = 0, first_unstable = -1;
@@ -59,6 +73,10 @@ struct StepContext {
 
     std::int64_t contact_nodes = 0, contacts = 0, sweeps = 0, searches = 0;  ///< summed over the steps
 };
+
+/// At time 0, nothing done yet.
+template <int Dim>
+StepContext<Dim> make_context(const Scene<Dim>& scene, double dt);
 
 /// Forces and contact at the present position: velocities become those of n+1/2; nothing moves.
 template <int Dim>

@@ -59,9 +59,7 @@ std::shared_ptr<Stage<Dim>> make_stage(const std::string& deck_file,
     auto stage = std::make_shared<Stage<Dim>>();
     stage->scene = make_scene<Dim>(deck);
     set_initial_velocities(deck, *stage->scene);
-    stage->now.dt = 0.6 * stage->scene->stable_step();
-    stage->now.grain_impulse.assign(stage->scene->grains.size(), Vec<Dim>::Zero());
-    stage->now.wall_impulse.assign(stage->scene->walls.size(), Vec<Dim>::Zero());
+    stage->now = make_context(*stage->scene, 0.6 * stage->scene->stable_step());
     for (int k = 0; k < steps; ++k) {
         kick(*stage->scene, stage->now);
         drift(*stage->scene, stage->now);

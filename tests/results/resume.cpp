@@ -20,6 +20,7 @@ void add(ResultWriter& writer, int dimension, int first, int last) {
         GrainRow grain;
         grain.time = 0.1 * i;
         writer.add_grain(grain);
+        writer.add_reaction({.time = 0.1 * i, .name = "wall"});
         writer.add_frame(make_sample_frame(dimension, i));
     }
 }
@@ -31,7 +32,7 @@ WriterOptions options(const std::string& directory, int dimension) {
 constexpr int n_frames = 6;
 
 void require_equal(const std::string& resumed, const std::string& whole, int dimension) {
-    for (const char* name : {"history.csv", "grains.csv", "results.xdmf", "results.pvd"})
+    for (const char* name : {"history.csv", "grains.csv", "reactions.csv", "results.xdmf", "results.pvd"})
         CHECK(read_text(resumed + "/" + name) == read_text(whole + "/" + name));
     const FrameFileReader a(resumed + "/results.h5"), b(whole + "/results.h5");
     REQUIRE(a.n_frames() == n_frames);

@@ -185,6 +185,9 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
         GrainRow grain{.time = 0.2, .grain = 7, .angle = 8, .omega = 9};
         grain.position[1] = 1, grain.velocity[0] = 2, grain.force[2] = 3;
         writer.add_grain(grain);
+        ReactionRow reaction{.time = 0.3, .name = "a, \"b\"", .work = 9};
+        reaction.position[0] = 1, reaction.displacement[1] = 2, reaction.force[0] = 3, reaction.moment[2] = 4;
+        writer.add_reaction(reaction);
         writer.finish({});
         const bool plane = dimension == 2;
         CHECK(read_text(scratch.path("run/history.csv")) ==
@@ -199,6 +202,10 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
         CHECK(read_text(scratch.path("run/grains.csv")) ==
               (plane ? "time,grain,x,y,vx,vy,angle,omega,fx,fy\n0.2,7,0,1,2,0,8,9,0,0\n"
                      : "time,grain,x,y,z,vx,vy,vz,angle,omega,fx,fy,fz\n0.2,7,0,1,0,2,0,0,8,9,0,0,3\n"));
+        CHECK(read_text(scratch.path("run/reactions.csv")) ==
+              (plane ? "time,name,x,y,ux,uy,fx,fy,moment,work\n0.3,\"a, \"\"b\"\"\",1,0,0,2,3,0,4,9\n"
+                     : "time,name,x,y,z,ux,uy,uz,fx,fy,fz,mx,my,mz,work\n"
+                       "0.3,\"a, \"\"b\"\"\",1,0,0,0,2,0,3,0,0,0,0,4,9\n"));
     }
 }
 
@@ -212,6 +219,9 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
     summary.energy.residual = -std::numeric_limits<double>::infinity();
     summary.stages = {{"forces", 0.1}, {"contact", 1e22}};
     summary.writer_seconds = 0.25;
+    ReactionRow reaction{.name = "a \"b\"", .work = 4};
+    reaction.displacement[1] = 1.5, reaction.force[0] = 2, reaction.moment[2] = 3;
+    summary.reactions = {reaction};
     summary.warnings = {{"grain 3 left the domain (step 7)", 2}};
     writer.finish(summary);
     CHECK(python_accepts(
@@ -221,11 +231,14 @@ TEST_CASE("ResultWriter: the summary is valid JSON whatever its texts and number
         "assert s[\"time_step\"] == 1e-5 and s[\"stages\"][\"contact\"] == 1e22; "
         "assert s[\"warnings\"] == [{\"text\": \"grain 3 left the domain (step 7)\", \"count\": 2}]; "
         "assert s[\"writer_seconds\"] == 0.25; "
+        "assert s[\"reactions\"] == [{\"name\": \"a \\\"b\\\"\", \"displacement\": [0, 1.5], \"force\": [2, "
+        "0], "
+        "\"moment\": 3, \"work\": 4}]; "
         "assert set(s) == set(\"version title outcome dimension threads instructions deck_hash state_hash "
         "steps "
         "n_particles n_bonds n_grains simulated_time time_step stable_step wall_seconds "
-        "ns_per_particle_step peak_memory_bytes stages writer_seconds contact_per_step energy momentum_error "
-        "warnings\".split())",
+        "ns_per_particle_step peak_memory_bytes stages writer_seconds contact_per_step reactions energy "
+        "momentum_error warnings\".split())",
         scratch.path("run/summary.json")));
 }
 
@@ -266,7 +279,7 @@ TEST_CASE("ResultWriter: a directory that cannot be made is named, with the reas
 
 TEST_CASE("ResultWriter: a full disk is named, with the file") {
     const ScratchDirectory scratch;
-    for (const char* name : {"history.csv", "grains.csv"}) {
+    for (const char* name : {"history.csv", "grains.csv", "reactions.csv"}) {
         const std::string file = scratch.path(std::string(name) + ".run/") + name;
         std::filesystem::create_directory(std::filesystem::path(file).parent_path());
         std::filesystem::create_symlink("/dev/full", file);

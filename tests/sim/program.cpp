@@ -28,8 +28,8 @@ TEST_CASE("Program: run writes its results and says where") {
     CHECK(result.err == "");
     CHECK(contains(result.out, "1 grains"));
     CHECK(contains(result.out, out));
-    for (const char* name : {"results.h5", "results.xdmf", "history.csv", "grains.csv", "summary.json",
-                             "run.log", "deck.resolved.yaml"})
+    for (const char* name : {"results.h5", "results.xdmf", "history.csv", "grains.csv", "reactions.csv",
+                             "summary.json", "run.log", "deck.resolved.yaml"})
         CHECK_MESSAGE(std::filesystem::exists(out + "/" + name), name);
     const std::string summary = read_file(out + "/summary.json");
     for (const char* key : {"\"state_hash\"", "\"n_grains\": 1", "\"n_particles\"", "\"n_bonds\"",
