@@ -100,6 +100,8 @@ inline unsigned intact(BatchState& s, int b, int lane, Pack squared, Pack square
             torn |= greater(load(s.shortest + lane) * squared_length, squared);
         torn &= on;
         if (torn != 0) [[unlikely]] {
+            if (s.kept != nullptr) torn &= ~(static_cast<unsigned>(s.kept[b]) >> lane);
+            if (torn == 0) return on;
             on &= ~torn;
             const unsigned char bits = static_cast<unsigned char>(torn << lane);
             s.alive[b] = static_cast<unsigned char>(s.alive[b] & ~bits);

@@ -42,14 +42,17 @@ void set_break_limits(BatchScratch& scratch, BatchState& state, const GrainBatch
     const BreakLimit& first = limit_of(0);
     if (state.alive == nullptr || !first.exists()) return;
     for (int lane = 0; lane < batch_lanes; ++lane) {
-        const double scale = batch.grain[lane].scale;
+        const double scale = batch.grain[lane].scale, strength = batch.grain[lane].strength;
         const bool own = lane < batch.size;  // an empty lane owns no bits that could break
-        const double longest = own ? limit_of(lane).longest(scale) : std::numeric_limits<double>::infinity();
-        const double shortest = own ? limit_of(lane).shortest(scale) : 0.0;
+        const double longest =
+            own ? limit_of(lane).longest(scale, strength) : std::numeric_limits<double>::infinity();
+        const double shortest = own ? limit_of(lane).shortest(scale, strength) : 0.0;
         scratch.longest.lane[lane] = longest * longest;
         scratch.shortest.lane[lane] = shortest * shortest;
     }
     state.longest = scratch.longest.lane;
+    const BondBits& kept = batch.grain[0].kept;
+    state.kept = kept.empty() ? nullptr : kept.bytes().data();
     if (first.in_compression) state.shortest = scratch.shortest.lane;
     const std::size_t most = 4 * n_bonds;  // the narrowest set goes through the bonds four times
     state.broken_bond = BatchScratch::at_least(scratch.broken_bond, most);

@@ -50,14 +50,15 @@ struct UnionTopology {
 
 /// Rows of eight lanes, aligned to 64 bytes.
 struct BatchState {
-    const double* x;         ///< [n][Dim][8] positions over the lane's scale
-    const double* v;         ///< [n][Dim][8] velocities over the lane's scale, or null
-    unsigned char* alive;    ///< [n_bonds] a bit a lane, or null: all intact
-    const double* longest;   ///< [8] (1 + critical stretch)^2, or null: nothing breaks
-    const double* shortest;  ///< [8] (1 - critical stretch)^2, or null: bonds break in tension only
-    double* f;               ///< [n][Dim][8] out: forces
-    double* dilatation;      ///< [n][8] scratch
-    int* broken_bond;        ///< [n_bonds] out: what broke just now
+    const double* x;            ///< [n][Dim][8] positions over the lane's scale
+    const double* v;            ///< [n][Dim][8] velocities over the lane's scale, or null
+    unsigned char* alive;       ///< [n_bonds] a bit a lane, or null: all intact
+    const unsigned char* kept;  ///< [n_bonds] a bit a lane: never breaks; or null: none
+    const double* longest;      ///< [8] (1 + critical stretch)^2, or null: nothing breaks
+    const double* shortest;     ///< [8] (1 - critical stretch)^2, or null: bonds break in tension only
+    double* f;                  ///< [n][Dim][8] out: forces
+    double* dilatation;         ///< [n][8] scratch
+    int* broken_bond;           ///< [n_bonds] out: what broke just now
     unsigned char* broken_lanes;
     int n_broken;
 };

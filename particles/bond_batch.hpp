@@ -26,7 +26,7 @@ const BatchLoops& batch_loops(Instructions set);
 template <int Dim>
 struct GrainBatch {
     int size = 0;
-    std::array<GrainView<Dim>, batch_lanes> grain;  ///< alive: bit k for grain k, in bytes shared by all
+    std::array<GrainView<Dim>, batch_lanes> grain;  ///< bonds: bit k for grain k, in bytes shared by all
     std::array<Vec<Dim>*, batch_lanes> f;           ///< [n] each: forces are added here [N; 2D: N/m]
 };
 

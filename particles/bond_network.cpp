@@ -74,14 +74,16 @@ double BondNetwork<Dim>::elastic_energy(const GrainView<Dim>& grain) const {
 template <int Dim>
 int BondNetwork<Dim>::break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const {
     if (!limit_.exists()) return 0;
-    const double up_to = grain.scale * limit_.longest(grain.scale);
-    const double down_to = grain.scale * limit_.shortest(grain.scale);
+    const double up_to = grain.scale * limit_.longest(grain.scale, grain.strength);
+    const double down_to = grain.scale * limit_.shortest(grain.scale, grain.strength);
     int n_broken = 0;
     for (int i = 0; i < bonds_.n_nodes(); ++i)
         for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
             const double longest = up_to * bonds_.length[b], shortest = down_to * bonds_.length[b];
             const double squared = (grain.x[bonds_.partner[b]] - grain.x[i]).squaredNorm();
-            if (alive[b] == 0 || (squared <= longest * longest && squared >= shortest * shortest)) continue;
+            if ((alive[b] & 1) == 0 || (squared <= longest * longest && squared >= shortest * shortest))
+                continue;
+            if (never_breaks(grain, b)) continue;
             alive[b] = 0;
             ++n_broken;
         }
@@ -93,10 +95,11 @@ void BondNetwork<Dim>::compute_damage(const GrainView<Dim>& grain, std::span<dou
     for (int i = 0; i < bonds_.n_nodes(); ++i) {
         double whole = 0.0, broken = 0.0;
         for (const auto [j, b] : bonds_.family_of(i)) {
+            if (!was_whole(grain, b)) continue;
             whole += bonds_.volume[j];
             if (!is_alive(grain, b)) broken += bonds_.volume[j];
         }
-        damage[i] = broken / whole;
+        damage[i] = broken > 0.0 ? broken / whole : 0.0;
     }
 }
 
@@ -106,10 +109,11 @@ void BondNetwork<Dim>::compute_relative_stretch(const GrainView<Dim>& grain,
     std::fill(stretch.begin(), stretch.end(), 0.0);
     for (int i = 0; i < bonds_.n_nodes(); ++i)
         for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
+            if (!was_whole(grain, b) || never_breaks(grain, b)) continue;
             const int j = bonds_.partner[b];
             double s = bond_vector(grain, i, j).norm() / bonds_.length[b] - 1.0;
             if (limit_.in_compression) s = std::abs(s);
-            s /= limit_.stretch_of(grain.scale);
+            s /= limit_.stretch_of(grain.scale, grain.strength);
             stretch[i] = std::max(stretch[i], s);
             stretch[j] = std::max(stretch[j], s);
         }

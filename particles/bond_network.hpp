@@ -55,17 +55,19 @@ class BondNetwork {
     /// [J; 2D: J/m]
     double elastic_energy(const GrainView<Dim>& grain) const;
 
-    /// Clears alive [n_bonds] where the stretch |y|/(s xi) - 1 is beyond `break_limit`; never sets it. Number
-    /// newly broken.
+    /// Clears alive [n_bonds], read by its lowest bit, where the stretch |y|/(s xi) - 1 is beyond
+    /// `break_limit` and the bond is none of `kept`; never sets it. Number newly broken.
     int break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const;
 
-    /// damage [n] = volume of the broken part of the family over that of the whole family, in [0, 1].
+    /// damage [n] = volume of the broken part of the family over that of the whole family, in [0, 1]; family:
+    /// what the cracks of the start have left of it, so that a notch is no damage.
     void compute_damage(const GrainView<Dim>& grain, std::span<double> damage) const;
 
-    /// stretch [n] = max_j s_ij/s0 over all bonds of a node, broken ones included; s = |y|/(s xi) - 1 where
-    /// bonds break in tension only, its absolute value where they break in both directions. From 1 up the
-    /// bond that has it is broken. Source: Z of Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 14,
-    /// which takes |u_j - u_i|/xi for s and so grows when a grain turns; their code takes |s|.
+    /// stretch [n] = max_j s_ij/s0 over all bonds of a node, broken ones included, those that cracks of the
+    /// start cross and those that never break left out; s = |y|/(s xi) - 1 where bonds break in tension only,
+    /// its absolute value where they break in both directions. From 1 up the bond that has it is broken.
+    /// Source: Z of Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 14, which takes |u_j - u_i|/xi
+    /// for s and so grows when a grain turns; their code takes |s|.
     void compute_relative_stretch(const GrainView<Dim>& grain, std::span<double> stretch) const;
 
     /// stress [n * 4: xx, yy, xy, zz | n * 6: xx, yy, zz, xy, yz, xz] = Cauchy stress [Pa] of the non-local
@@ -100,6 +102,12 @@ class BondNetwork {
 
     bool is_alive(const GrainView<Dim>& grain, int bond) const {
         return grain.alive.empty() || grain.alive[bond];
+    }
+    bool was_whole(const GrainView<Dim>& grain, int bond) const {
+        return grain.whole.empty() || grain.whole[bond];
+    }
+    bool never_breaks(const GrainView<Dim>& grain, int bond) const {
+        return !grain.kept.empty() && grain.kept[bond];
     }
     Vec<Dim> bond_vector(const GrainView<Dim>& grain, int i, int j) const {
         return (grain.x[j] - grain.x[i]) / grain.scale;

@@ -25,6 +25,8 @@ namespace quern {
 /// ratio of springs, where the LPS has no energy of dilatation. d is that of the grain, s times that of its
 /// shape, so that s0 falls as s^(-1/2) and grains of every size have Gc.
 ///
+/// A grain with a strength f (weibull.hpp) breaks at f s0.
+///
 /// Sources: Silling & Askari, Comput. Struct. 83 (2005) 1526, eqs 26, 27 (w = 1/r; other w and the plane by
 /// the same integral); Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 10. Differs: the public
 /// PeriDEM code compares |s| with s0 with a relative tolerance of 1e-5; none here.
@@ -34,11 +36,13 @@ struct BreakLimit {
     bool in_compression = false;
 
     bool exists() const { return std::isfinite(stretch); }
-    double stretch_of(double scale) const { return by_energy ? stretch / std::sqrt(scale) : stretch; }
-    /// Longest and shortest |y|/xi of a bond of a grain of this scale.
-    double longest(double scale) const { return 1.0 + stretch_of(scale); }
-    double shortest(double scale) const {
-        return in_compression ? std::max(0.0, 1.0 - stretch_of(scale)) : 0.0;
+    double stretch_of(double scale, double strength = 1.0) const {
+        return strength * (by_energy ? stretch / std::sqrt(scale) : stretch);
+    }
+    /// Longest and shortest |y|/xi of a bond of a grain of this scale and strength.
+    double longest(double scale, double strength = 1.0) const { return 1.0 + stretch_of(scale, strength); }
+    double shortest(double scale, double strength = 1.0) const {
+        return in_compression ? std::max(0.0, 1.0 - stretch_of(scale, strength)) : 0.0;
     }
 };
 

@@ -41,6 +41,9 @@ struct GrainView {
     std::span<const Vec<Dim>> x;  ///< [n] current positions [m]
     std::span<const Vec<Dim>> v;  ///< [n] velocities [m/s]; read by damping only, else may be empty
     BondBits alive;               ///< [n_bonds]; empty = all intact
+    BondBits whole = {};          ///< [n_bonds] what the cracks of the start have left; empty = all
+    BondBits kept = {};           ///< [n_bonds] bonds that never break; empty = none
+    double strength = 1.0;        ///< its critical stretch over that of its material
 };
 
 }  // namespace quern

@@ -17,10 +17,11 @@ struct Grain {
     double scale = 1.0;
     int first = 0, count = 0;  ///< range of particles
     int material = 0;
-    double mass = 0.0;    ///< [kg; 2D: kg/m]
-    double volume = 0.0;  ///< [m^3; 2D: m^2]
-    int id = 0;           ///< number in the deck
-    bool wall = false;    ///< stands for a wall: no contact between two of them (node pairs)
+    double mass = 0.0;      ///< [kg; 2D: kg/m]
+    double volume = 0.0;    ///< [m^3; 2D: m^2]
+    double strength = 1.0;  ///< critical stretch over that of its material
+    int id = 0;             ///< number in the deck
+    bool wall = false;      ///< stands for a wall: no contact between two of them (node pairs)
 };
 
 /// State of all particles, grain after grain.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 
 namespace quern {
@@ -21,6 +22,12 @@ enum class VolumeCorrection { none, linear };
 enum class HorizonRim { included, excluded };  ///< bonds exactly as long as the horizon
 enum class BreaksIn { tension, both };
 enum class StretchFormula { energy_balance, peridem };
+
+/// Strength that differs from grain to grain, see weibull.hpp.
+struct StrengthScatter {
+    double weibull_modulus = 0.0;
+    int seed = 0;
+};
 
 /// One material of the deck. SI units; 2D quantities are per metre of thickness.
 struct Material {
@@ -44,6 +51,7 @@ struct Material {
     double fracture_energy = 0.0;  ///< Gc, from which the critical stretch follows; 0: it is given [J/m^2]
     StretchFormula critical_stretch_formula = StretchFormula::energy_balance;
     BreaksIn breaks_in = BreaksIn::tension;
+    std::optional<StrengthScatter> strength;  ///< none: all grains alike
 
     double horizon_of(double dx) const { return horizon > 0.0 ? horizon : horizon_ratio * dx; }  ///< [m]
     bool can_break() const {

@@ -92,7 +92,7 @@ double CellUnion<Dim>::fill() const {
 
 template <int Dim>
 UnionBatch<Dim>::UnionBatch(std::span<const UnionMember<Dim>> members, CellUnion<Dim> cells,
-                            const Material& material, Instructions set)
+                            const Material& material, Instructions set, bool with_bits)
     : loops_(&batch_loops(set)), damping_(material.bond_damping) {
     for (std::size_t lane = 0; lane < members.size(); ++lane) limit_[lane] = members[lane].limit;
     for (const int j : cells.partner) bond_.push_back({j, 0, 0});
@@ -101,7 +101,7 @@ UnionBatch<Dim>::UnionBatch(std::span<const UnionMember<Dim>> members, CellUnion
     first_ = std::move(cells.first);
     node_of_ = std::move(cells.node_of);
     set_nodes(members);
-    if (limit_[0].exists()) bond_of_ = std::move(cells.bond_of);
+    if (with_bits) bond_of_ = std::move(cells.bond_of);
 }
 
 template <int Dim>

@@ -50,16 +50,17 @@ class CellUnion {
 template <int Dim>
 class UnionBatch {
   public:
-    /// `members` in the order of the lanes, one to eight; read here only.
+    /// `members` in the order of the lanes, one to eight; read here only. `with_bits`: bonds may be missing
+    /// or break.
     UnionBatch(std::span<const UnionMember<Dim>> members, CellUnion<Dim> cells, const Material& material,
-               Instructions set);
+               Instructions set, bool with_bits);
 
     /// As BondBatch. `batch`: the grains of the members, in their order.
     BrokenBonds add_elastic_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const;
     void add_viscous_forces(const GrainBatch<Dim>& batch, std::span<std::uint8_t> alive) const;
 
     std::vector<std::uint8_t> intact() const;  ///< [n_bonds] a bit for every bond of every lane
-    /// [own bonds] where a lane's bonds are in the bytes; empty where no bond of the material can break.
+    /// [own bonds] where a lane's bonds are in the bytes; empty without bits.
     std::span<const int> places(int lane) const { return bond_of_[lane]; }
 
   private:

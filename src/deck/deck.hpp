@@ -152,6 +152,29 @@ struct ConstraintDeck {
     Place place;
 };
 
+/// What places are measured in: the box, or a shape, from its centre of mass, at scale 1 and angle 0.
+enum class PlaceFrame { world, shape };
+
+/// A cut that grains have from the start: from `from` to `to` in 2D; in 3D a parallelogram with `edge` as its
+/// other edge.
+struct CrackDeck {
+    std::vector<int> grains;  ///< empty: all
+    std::string shape;        ///< only grains of this shape; empty: all
+    PlaceFrame frame = PlaceFrame::world;
+    Numbers3 from{}, to{};  ///< [m]
+    Numbers3 edge{};        ///< [m]
+    Place place;
+};
+
+/// Where bonds never break: those with an end in the region.
+struct NoFailDeck {
+    std::vector<int> grains;
+    std::string shape;
+    PlaceFrame frame = PlaceFrame::world;
+    std::optional<Expression> region;  ///< of x, y, z; non-zero: inside
+    Place place;
+};
+
 /// Relaxation before the clock starts: own gravity, damping and friction, then velocities are zeroed and
 /// the initial velocities of the deck are given.
 struct PrepareDeck {
@@ -206,6 +229,8 @@ struct Deck {
     double mass_damping = 0.0;  ///< force -mass_damping m v [1/s]
     std::vector<LoadDeck> loads;
     std::vector<ConstraintDeck> constraints;
+    std::vector<CrackDeck> cracks;
+    std::vector<NoFailDeck> no_fail;
     PrepareDeck prepare;
     TimeDeck time;
     ComputeDeck compute;

@@ -60,6 +60,8 @@ struct DeckInput {
     DampingInput damping;
     std::vector<LoadInput> loads;
     std::vector<ConstraintDeck> constraints;
+    std::vector<CrackDeck> cracks;
+    std::vector<NoFailDeck> no_fail;
     PrepareInput prepare;
     OutputDeck output;
 };
@@ -73,11 +75,18 @@ const Table<DeckInput>& deck_table();
 Table<MaterialInput> material_table();
 Table<ShapeDeck> shape_table();
 Table<GrainInput> grain_table();
+Table<CrackDeck> crack_table();
+Table<NoFailDeck> no_fail_table();
 
 // Checks of single sections, run as soon as each is read.
 void finish_material(MaterialInput& material, const Cursor& at, const Context& now);
 void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now);
 void finish_grid(GridDeck& grid, const Cursor& at, const Context& now);
+
+/// Key of grain numbers.
+Key grain_ids_key(const char* name, const char* about);
+/// Adds to `ids` what it says; nothing for the word all.
+void read_grain_ids(std::vector<int>& ids, const Cursor& at, const Context& now, const Key& key);
 
 /// The word of a shape's type: "disk", ...
 const std::vector<std::string>& shape_types();

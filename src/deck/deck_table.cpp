@@ -282,21 +282,11 @@ Table<DampingInput> damping_table() {
 template <class T>
 void add_ids(Table<T>& t, const char* name, std::type_identity_t<std::vector<int> T::*> member,
              const char* about) {
-    const Key key{.name = name, .form = Form::ids, .range = not_negative, .about = about};
+    const Key key = grain_ids_key(name, about);
     t.add(
         key,
         [=](T& target, const Cursor& at, const Context& now) {
-            if (says(at, now, "all")) return;
-            if (at.node().kind != Node::Kind::list || at.node().items.empty()) {
-                const bool list = at.node().kind == Node::Kind::list;
-                throw InputError(at.where(), list ? "an empty list" : at.node().description(),
-                                 key.expectation(2));
-            }
-            Key id = key;
-            id.form = Form::integer;
-            for (std::size_t i = 0; i < at.node().items.size(); ++i) {
-                (target.*member).push_back(read_integer(at.entry(i), now, id));
-            }
+            read_grain_ids(target.*member, at, now, key);
         },
         [=](const T& target, int) { return (target.*member).empty() ? "all" : ids_text(target.*member); });
 }
@@ -421,6 +411,8 @@ Table<DeckInput> make_deck_table() {
     t.section("damping", &T::damping, damping_table(), "Artificial damping");
     t.list("loads", &T::loads, load_table(), "Body forces");
     t.list("constraints", &T::constraints, constraint_table(), "Prescribed velocities of particles");
+    t.list("cracks", &T::cracks, crack_table(), "Cuts that grains have from the start");
+    t.list("no_fail", &T::no_fail, no_fail_table(), "Where bonds never break");
     t.section("prepare", &T::prepare, prepare_table(), "Relaxation before the run");
     t.section("compute", &T::compute, compute_table(), "How forces inside the grains are evaluated");
     t.section("output", &T::output, output_table(), "What is written, and how often");

@@ -136,6 +136,8 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     deck.mass_damping = input.damping.mass;
     deck.loads.assign(input.loads.begin(), input.loads.end());
     deck.constraints = std::move(input.constraints);
+    deck.cracks = std::move(input.cracks);
+    deck.no_fail = std::move(input.no_fail);
     deck.prepare = input.prepare;
     deck.prepare.loads.assign(input.prepare.load_entries.begin(), input.prepare.load_entries.end());
     deck.time = input.time;
@@ -158,6 +160,13 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     for (const LoadDeck& load : deck.loads) check_ids(load.grains, n, place_text(load.place, "grains"));
     for (const ConstraintDeck& held : deck.constraints)
         check_ids(held.grains, n, place_text(held.place, "grains"));
+    const auto check_target = [&](const auto& target) {
+        check_ids(target.grains, n, place_text(target.place, "grains"));
+        if (target.shape.empty()) return;
+        check_name(target.shape, shapes, "shape", [&] { return place_text(target.place, "shape"); });
+    };
+    for (const CrackDeck& crack : deck.cracks) check_target(crack);
+    for (const NoFailDeck& zone : deck.no_fail) check_target(zone);
     check_ids(deck.output.track, n, at.where("output.track"));
     return deck;
 }

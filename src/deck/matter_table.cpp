@@ -67,6 +67,16 @@ void finish_grain(GrainInput& grain, const Cursor& at, const Context& now) {
     }
 }
 
+Table<StrengthScatter> strength_table() {
+    using T = StrengthScatter;
+    Table<T> t;
+    t.number("weibull_modulus", &T::weibull_modulus, "", {1.0, no_limit, false, false, false},
+             "Of the critical stretch, whose mean is that of the material")
+        .require();
+    t.integer("seed", &T::seed, not_negative, "Of the random numbers, one a grain");
+    return t;
+}
+
 /// A number of which another key is the alternative: written where it is the one in use.
 void add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member, const char* unit,
                      const Range& range, const char* about,
@@ -148,6 +158,8 @@ Table<MaterialInput> material_table() {
         });
     t.word("breaks_in", &T::breaks_in, {"tension", "both"},
            "Bonds break when stretched, or when compressed as well; default of peridem: both");
+    t.section("strength", static_cast<std::optional<StrengthScatter> T::*>(&T::strength), strength_table(),
+              "Critical stretch that differs from grain to grain");
     t.finish = finish_material;
     return t;
 }

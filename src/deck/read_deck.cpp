@@ -50,6 +50,8 @@ DeckInput make_input(const Deck& deck) {
     input.damping.mass = deck.mass_damping;
     for (const LoadDeck& load : deck.loads) input.loads.push_back(load_input(load));
     input.constraints = deck.constraints;
+    input.cracks = deck.cracks;
+    input.no_fail = deck.no_fail;
     static_cast<PrepareDeck&>(input.prepare) = deck.prepare;
     for (const LoadDeck& load : deck.prepare.loads) input.prepare.load_entries.push_back(load_input(load));
     input.compute = deck.compute;

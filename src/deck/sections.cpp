@@ -65,6 +65,10 @@ void finish_material(MaterialInput& material, const Cursor& at, const Context& n
         throw InputError(at.where("critical_stretch_formula"),
                          "critical_stretch_formula without fracture_energy", "fracture_energy beside it");
     }
+    if (material.strength && !material.can_break()) {
+        throw InputError(at.where("strength"), "strength of a material that never breaks",
+                         "critical_stretch or fracture_energy beside it");
+    }
 }
 
 void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now) {

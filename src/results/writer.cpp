@@ -37,7 +37,8 @@ constexpr std::size_t long_packet = 4096;
 /// A directory that can be written to, without what would tell of another run.
 const std::string& make_run_directory(const WriterOptions& options) {
     create_directory(options.directory);
-    for (const char* name : {"summary.json", "results.pvd", "checkpoint.h5", "checkpoint.previous.h5"}) {
+    for (const char* name :
+         {"summary.json", "results.pvd", "strength.csv", "checkpoint.h5", "checkpoint.previous.h5"}) {
         std::error_code error;
         if (options.resumed && name != std::string_view("summary.json")) continue;
         std::filesystem::remove(options.directory + "/" + name, error);

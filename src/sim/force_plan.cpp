@@ -86,7 +86,7 @@ void make_unions(const Deck& deck, Scene<Dim>& scene) {
         k += static_cast<std::size_t>(task.size);
         task.union_batch = static_cast<int>(scene.unions.size());
         scene.unions.emplace_back(members, std::move(cells), deck.materials[material],
-                                  deck.compute.instructions);
+                                  deck.compute.instructions, scene.group_of(task.grain[0]).breakable);
         scene.force_tasks.push_back(task);
     }
 }

@@ -90,7 +90,10 @@ class Run {
         summary_.threads = parallel::n_threads();
         summary_.instructions = batch_loops(deck.compute.instructions).name;
         summary_.deck_hash = origin.deck_hash;
-        if (!resumed_) writer_->write_text("deck.resolved.yaml", resolved_yaml(deck));
+        if (!resumed_) {
+            writer_->write_text("deck.resolved.yaml", resolved_yaml(deck));
+            write_strengths();
+        }
         summary_.n_particles = scene_->particles.size();
         summary_.n_bonds = scene_->n_bonds;
         summary_.n_grains = static_cast<std::int64_t>(scene_->grains.size());
@@ -193,6 +196,25 @@ class Run {
             fmt::format("{} grains, {} particles, {} bonds; time step {:.6g} s (stable {:.6g} s), {} steps",
                         summary_.n_grains, summary_.n_particles, summary_.n_bonds, summary_.time_step,
                         summary_.stable_step, n_steps_));
+        if (scene_->n_cut > 0) writer_->log(fmt::format("cracks cut {} bonds", scene_->n_cut));
+    }
+
+    /// Where the strength differs from grain to grain.
+    void write_strengths() {
+        if (std::none_of(deck_.materials.begin(), deck_.materials.end(),
+                         [](const Material& material) { return material.strength.has_value(); }))
+            return;
+        std::string text = "grain,strength,critical_stretch\n";
+        for (const int g : scene_->grain_of_id) {
+            const Grain<Dim>& grain = scene_->grains[g];
+            const double stretch = std::visit(
+                [&](const auto& model) {
+                    return model.break_limit().stretch_of(grain.scale, grain.strength);
+                },
+                scene_->group_of(g).model);
+            text += fmt::format("{},{},{}\n", grain.id, grain.strength, stretch);
+        }
+        writer_->write_text("strength.csv", text);
     }
 
     void warn(const std::string& text) {

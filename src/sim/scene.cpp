@@ -11,7 +11,9 @@
 #include "grid/parallel.hpp"
 #include "grid/z_order.hpp"
 #include "particles/strain.hpp"
+#include "particles/weibull.hpp"
 #include "src/mesh/make_shape.hpp"
+#include "src/sim/cracks.hpp"
 #include "src/sim/force_plan.hpp"
 #include "src/sim/overlap.hpp"
 
@@ -142,6 +144,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         grain.material = material_index;
         grain.id = id;
         grain.wall = from.wall;
+        if (material.strength)
+            grain.strength = weibull_factor(material.strength->weibull_modulus, material.strength->seed, id);
         const double volume_scale = std::pow(from.scale, Dim);
         const Mat<Dim> R = rotation_matrix(spin(from.angle, Spin<Dim>{}));
         for (int i = 0; i < shape.n_nodes(); ++i) {
@@ -333,10 +337,17 @@ GrainView<Dim> Scene<Dim>::view(int grain) const {
     const std::size_t first = static_cast<std::size_t>(grains[grain].first);
     const std::size_t count = static_cast<std::size_t>(grains[grain].count);
     const BondBytes& bytes = bond_bytes[static_cast<std::size_t>(grain)];
+    const auto bits = [&](const std::vector<std::uint8_t>& all) {
+        if (all.empty()) return BondBits();
+        return BondBits({all.data() + bytes.begin, bytes.count}, bytes.bit, bytes.place);
+    };
     return {grains[grain].scale,
             {particles.x.data() + first, count},
             {particles.v.data() + first, count},
-            BondBits({alive.data() + bytes.begin, bytes.count}, bytes.bit, bytes.place)};
+            bits(alive),
+            bits(whole),
+            bits(kept),
+            grains[grain].strength};
 }
 
 template <int Dim>
@@ -419,7 +430,10 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
         scene->shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
     add_walls(deck, *scene);
     place_grains(deck, *scene);
+    mark_cracked(deck, *scene);
     plan_forces(deck, *scene);
+    set_cracks(deck, *scene);
+    set_no_fail(deck, *scene);
     check_overlap(deck, *scene);
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();
@@ -447,6 +461,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
             arrays.drift_before.assign(n, Vec<Dim>::Zero());
         }
     }
+    hand_over_cracks(*scene);
     scene->gravity = vec<Dim>(deck.gravity);
     scene->mass_damping = deck.mass_damping;
     add_loads_and_constraints(deck, *scene);

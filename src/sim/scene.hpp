@@ -21,7 +21,8 @@ template <int Dim>
 struct MaterialGroup {
     PeridynamicModel<Dim> model;
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
-    bool damped = false, breakable = false;
+    bool damped = false;
+    bool breakable = false;     ///< bonds may break, or are missing from the start
     bool batched = false;       ///< forces by batches of eight of its own, in the order of the grains
     double bond_damping = 0.0;  ///< [s]
     double density = 0.0;       ///< [kg/m^3]
@@ -81,8 +82,11 @@ struct Scene {
     std::vector<int> grain_of_id;        ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
     std::vector<Vec<Dim>> x_start;  ///< positions as placed [m]
+    std::int64_t n_cut = 0;         ///< bonds that cracks cross at the start
     /// Bonds of breakable grains. A grain has a bit in each of its bytes; those of a batch share the bytes.
     std::vector<std::uint8_t> alive;
+    std::vector<std::uint8_t> whole;    ///< `alive` as the cracks of the start left it; empty: no cracks
+    std::vector<std::uint8_t> kept;     ///< bits of bonds that never break, as `alive`; empty: none
     std::vector<BondBytes> bond_bytes;  ///< [n_grains] into `alive`
     std::int64_t n_bonds = 0;
 

@@ -90,7 +90,7 @@ gravity: [${9.8*sin(theta)}, 0, ${-9.8*cos(theta)}]
 materials:
   glass: {density: 2.44 g/cm^3, young_modulus: 72 GPa, poisson_ratio: 0.25, model: bond_based,
           horizon_ratio: 3, influence: gaussian, calibration: none, surface_correction: volume,
-          bond_damping: 2 us, critical_stretch: 0.1 %}
+          bond_damping: 2 us, critical_stretch: 0.1 %, strength: {weibull_modulus: 8, seed: 3}}
   "odd name, really": {density: 1 t/m^3, bulk_modulus: 1 GPa, young_modulus: 2 GPa}
 shapes:
   ball: {type: sphere, filling: rings, radius: 1 cm, spacing: 1 mm}
@@ -124,6 +124,9 @@ output: {interval: 1 s, history_interval: 10 ms, track: [0, 1], vtp: true}
 grains:
   - {shape: ball, material: glass, position: [0, 1 cm, 20 mm], angle: [0, 0, 90 deg], spin: [60 rpm, 0, 0]}
   - {shape: brick, material: "odd name, really", position: [0, 0.5, 0], velocity: [1 km/h, 0, 0], scale: 1.5}
+cracks:
+  - {shape: brick, frame: shape, from: [0, 0, 0], to: [1 cm, 0, 0], edge: [0, 1 cm, 0]}
+no_fail: [{grains: [1], region: 'x + y < 0'}]
 )";
 
 /// `text` with one occurrence of `from` replaced; an error if there is none.

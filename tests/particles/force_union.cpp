@@ -88,7 +88,7 @@ struct Union {
         : company(all),
           chosen(std::move(grains)),
           members(pick()),
-          batch(members, CellUnion<Dim>(members), material, set) {
+          batch(members, CellUnion<Dim>(members), material, set, material.can_break()) {
         for (const int g : chosen) {
             f.push_back(all.zero(g));
             damping.push_back(all.zero(g));
