@@ -69,10 +69,7 @@ struct Outcome {
 };
 
 Outcome advance(Scene<2>& scene, int steps) {
-    StepContext<2> now;
-    now.dt = 0.3 * scene.stable_step();
-    now.grain_impulse.assign(scene.grains.size(), Vec<2>::Zero());
-    now.wall_impulse.assign(scene.walls.size(), Vec<2>::Zero());
+    StepContext<2> now = make_context(scene, 0.3 * scene.stable_step());
     for (int k = 0; k < steps; ++k) {
         kick(scene, now);
         drift(scene, now);
