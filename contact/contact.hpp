@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -22,6 +23,12 @@ struct Wall {
     double friction = 0.0;
 
     double distance(const Vec<Dim>& x) const { return normal.dot(x - point); }
+};
+
+/// A broken bond of a grain, by the numbers of its nodes in the shape, lower one first.
+struct BrokenBond {
+    int first = 0, second = 0;
+    auto operator<=>(const BrokenBond&) const = default;
 };
 
 /// Friction coefficient of each pair of materials, symmetric.
@@ -100,6 +107,7 @@ struct GridContactOptions {
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n
+    int debris = 16;          ///< pieces of a broken grain with fewer particles move as debris
     double skin = 0.2;        ///< contact nodes are searched anew when something has moved this far [h]
     bool tile = true;         ///< gap where two fitted profiles come closest; false: at mean positions
     bool curvature = true;    ///< profiles know the reference curvature

@@ -46,6 +46,8 @@ class ContactNodes {
     /// Finds nodes and sites, unless those of an earlier search still serve. `ahead` [m]: how far anything
     /// would go in this step without contact. Positions must be inside the grid.
     void find(const ContactScene<Dim>& scene, double ahead);
+    /// Grains are others than before: the next `find` searches.
+    void forget() { windows_.clear(); }
     /// Whether the last `find` searched.
     bool searched() const { return searched_; }
     bool may_sleep() const { return options_.skin > 0.0; }

@@ -29,7 +29,22 @@ ContactNodeOptions node_options(const GridContactOptions& options) {
 
 template <int Dim>
 GridContact<Dim>::GridContact(const CartesianGrid<Dim>& grid, const GridContactOptions& options)
-    : options_(options), nodes_(grid, node_options(options)), pair_(options) {}
+    : options_(options),
+      nodes_(grid, node_options(options)),
+      pair_(options),
+      bodies_(options.debris),
+      loose_(grid, options) {}
+
+template <int Dim>
+void GridContact<Dim>::set_pieces(const ContactScene<Dim>& scene, int grain, std::span<const int> piece,
+                                  std::span<const BrokenBond> broken) {
+    bodies_.set_pieces(scene, grain, piece, broken);
+    if (bodies_.changed()) {
+        nodes_.forget();
+        loose_.forget();
+    }
+    for (const auto& shape : bodies_.take_old_shapes()) pair_.forget(*shape);
+}
 
 template <int Dim>
 const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>& scene,
@@ -38,9 +53,28 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     report_.n_contacts = 0;
     report_.sweeps = 0;
     report_.converged = true;
-    report_.grain_impulse.assign(scene.grains.size(), Vec<Dim>::Zero());
     report_.wall_impulse.assign(scene.walls.size(), Vec<Dim>::Zero());
     report_.wall_moment.assign(scene.walls.size(), Spin<Dim>::Zero());
+    if (bodies_.whole()) {
+        apply_rule(scene, trial);
+        return report_;
+    }
+    const ContactScene<Dim> of_bodies = bodies_.gather(scene);
+    const ContactTrial<Dim> their_trial = bodies_.gather(trial);
+    apply_rule(of_bodies, their_trial);
+    received_.assign(scene.grains.size(), Vec<Dim>::Zero());
+    for (std::size_t b = 0; b < of_bodies.grains.size(); ++b)
+        received_[bodies_.grain_of(static_cast<int>(b))] += report_.grain_impulse[b];
+    std::swap(received_, report_.grain_impulse);
+    loose_.add_impulses(bodies_, of_bodies, their_trial, trial.v, report_);
+    bodies_.give_back(trial);
+    return report_;
+}
+
+/// The rule of the grid: `scene` holds grains, or the bodies of broken ones.
+template <int Dim>
+void GridContact<Dim>::apply_rule(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {
+    report_.grain_impulse.assign(scene.grains.size(), Vec<Dim>::Zero());
     nodes_.find(scene, trial.dt * trial.largest_speed);
     report_.searched = nodes_.searched();
     if (options_.rule != GridRule::seed) {
@@ -54,7 +88,6 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     else
         solve_on_nodes(scene, trial);
     report_.n_nodes = nodes_.n_nodes();
-    return report_;
 }
 
 template <int Dim>

@@ -25,12 +25,6 @@
 
 namespace quern {
 
-/// A broken bond of a grain, by the numbers of its nodes in the shape, lower one first.
-struct BrokenBond {
-    int first = 0, second = 0;
-    auto operator<=>(const BrokenBond&) const = default;
-};
-
 /// What contact between nodes knows beside positions and velocities.
 template <int Dim>
 struct PairMemory {

@@ -57,6 +57,8 @@ class PairRule {
 
     /// Nodes, slots and rows of this step. Rows that no speed present can close are left out.
     void prepare(ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
+    /// A shape that no grain has any more.
+    void forget(const Shape<Dim>& shape) { footprints_.erase(&shape); }
     /// Impulse coupling: solves on particle velocities `trial.v` in place. Flip coupling: on `nodal`, the
     /// velocities of the slots. Adds works and impulses to `report`.
     void solve_particles(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,

@@ -1,0 +1,88 @@
+// The bodies of grid contact: whole grains, and the pieces of those that are broken.
+//
+// Inside a grain nothing changes when it breaks: bonds, forces and arrays stay as they were. Contact sees
+// arrays of its own, in which the particles of each piece stand next to each other: a piece is then a grain
+// like any other (its shape: piece_shape.hpp), and no rule has to know of pieces. Positions and velocities
+// are copied there in every step and velocities back; as long as all grains are whole nothing is copied.
+//
+// Pieces of fewer particles than a bound are debris: too small to have a surface on the grid. They belong to
+// no body; loose_contact.hpp moves them.
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "contact/contact.hpp"
+
+namespace quern {
+
+/// A particle of debris, by its place in the arrays of the bodies.
+struct LooseParticle {
+    int particle, body;  ///< body: one number a piece, behind those of the bodies
+};
+/// Two particles on both sides of a crack inside one piece.
+struct CrackPair {
+    int first, second;
+    double range;  ///< distance at which they touch [m]
+};
+
+template <int Dim>
+class ContactBodies {
+  public:
+    /// `debris`: pieces of fewer particles than this are debris.
+    explicit ContactBodies(int debris) : debris_below_(debris) {}
+
+    /// What has become of a grain: piece [n] as of particles/pieces.hpp, and all its broken bonds.
+    void set_pieces(const ContactScene<Dim>& scene, int grain, std::span<const int> piece,
+                    std::span<const BrokenBond> broken);
+    /// Whether bodies have changed since the last call.
+    bool changed() { return std::exchange(changed_, false); }
+    /// Shapes that no body has any more.
+    std::vector<std::unique_ptr<Shape<Dim>>> take_old_shapes() { return std::exchange(old_shapes_, {}); }
+    /// No grain has a broken bond.
+    bool whole() const { return torn_.empty(); }
+
+    /// What contact works on, until the next call of set_pieces.
+    ContactScene<Dim> gather(const ContactScene<Dim>& grains);
+    ContactTrial<Dim> gather(const ContactTrial<Dim>& grains);
+    /// Velocities to where they came from.
+    void give_back(const ContactTrial<Dim>& grains) const;
+
+    /// [n] particle of the grains at each place.
+    std::span<const int> order() const { return order_; }
+    int body_of(int particle) const { return body_of_[particle]; }
+    int grain_of(int body) const { return grain_of_[body]; }
+    const std::vector<LooseParticle>& debris() const { return debris_; }
+    const std::vector<CrackPair>& cracks() const { return cracks_; }
+
+  private:
+    struct Piece {
+        std::unique_ptr<Shape<Dim>> shape;  ///< none: debris
+        std::vector<int> nodes;
+    };
+    struct Torn {
+        int grain = -1;
+        std::vector<int> piece;
+        std::vector<Piece> pieces;       ///< empty: all in one
+        std::vector<BrokenBond> cracks;  ///< inside pieces
+    };
+    Torn& torn(int grain);
+    void make(const ContactScene<Dim>& grains);
+
+    int debris_below_;
+    std::vector<Torn> torn_;  // by grain
+    std::vector<std::unique_ptr<Shape<Dim>>> old_shapes_;
+    bool changed_ = false, outdated_ = false;
+
+    std::vector<int> order_;
+    std::vector<Grain<Dim>> bodies_;
+    std::vector<int> grain_of_;  // [n_bodies + pieces of debris]
+    std::vector<int> body_of_;   // [n]
+    std::vector<LooseParticle> debris_;
+    std::vector<CrackPair> cracks_;
+    std::vector<Vec<Dim>> x_, v_, v_before_, drift_;
+    std::vector<double> mass_, volume_;
+};
+
+}  // namespace quern

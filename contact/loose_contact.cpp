@@ -1,0 +1,192 @@
+#include "contact/loose_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace quern {
+
+namespace {
+
+/// Of the largest ball of debris, how much further than touching a search looks.
+constexpr double skin = 1.0;
+/// No contact makes a particle approach another this many times faster than anything moved before.
+constexpr double faster_than_fastest = 10.0;
+/// Contact may make a body this much faster than what moves without it.
+constexpr double faster_by_contact = 2.0;
+
+template <int Dim>
+double ball_radius(double volume) {
+    return 0.5 * std::pow(volume, 1.0 / Dim);
+}
+
+}  // namespace
+
+template <int Dim>
+void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene) {
+    near_.clear();
+    searched_ = true;
+    if (bodies.debris().empty()) {
+        search_at_ = std::numeric_limits<double>::infinity();
+        return;
+    }
+    double of_debris = 0.0, of_all = 0.0;
+    for (const LooseParticle& loose : bodies.debris())
+        of_debris = std::max(of_debris, ball_radius<Dim>(scene.volume[loose.particle]));
+    for (const double volume : scene.volume) of_all = std::max(of_all, ball_radius<Dim>(volume));
+    const double margin = skin * of_debris;
+    const int n_bodies = static_cast<int>(scene.grains.size());
+    cells_.sort(scene.x, of_debris + of_all + margin, &grid_);
+    for (const LooseParticle& loose : bodies.debris()) {
+        const int p = loose.particle;
+        const double r_p = ball_radius<Dim>(scene.volume[p]);
+        cells_.visit_near(scene.x[p], [&](int q) {
+            const int other = bodies.body_of(q);
+            if (other == loose.body || (other >= n_bodies && q < p)) return;
+            const double range = r_p + ball_radius<Dim>(scene.volume[q]);
+            const double far = range + margin;
+            if (nearest_(scene.x[p], scene.x[q]).squaredNorm() < far * far) near_.push_back({p, q, range});
+        });
+    }
+    std::sort(near_.begin(), near_.end(), [](const CrackPair& a, const CrackPair& b) {
+        return std::pair(a.first, a.second) < std::pair(b.first, b.second);
+    });
+    search_at_ = scene.travelled + 0.5 * margin;
+}
+
+template <int Dim>
+void LooseContact<Dim>::add_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, int p, int q,
+                                double range) {
+    Row row{p, q, Vec<Dim>::Zero(), scene.mass[p], 0.0};
+    double gap = -range;
+    if (q >= 0) {
+        const Vec<Dim> d = nearest_(scene.x[p], scene.x[q]);
+        const double distance = d.norm();
+        if (!(distance > 0.0)) return;
+        row.n = d / distance;
+        row.mass = scene.mass[p] * scene.mass[q] / (scene.mass[p] + scene.mass[q]);
+        gap += distance;
+    } else {
+        const Wall<Dim>& wall = scene.walls[-1 - q];
+        row.n = wall.normal;
+        gap += wall.distance(scene.x[p]);
+    }
+    row.gap_speed = std::max(gap, 0.0) / trial.dt;
+    if (row.gap_speed > faster_than_fastest * trial.largest_speed) return;
+    rows_.push_back(row);
+    touched_.push_back(p);
+    if (q >= 0) touched_.push_back(q);
+}
+
+template <int Dim>
+void LooseContact<Dim>::make_rows(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                                  const ContactTrial<Dim>& trial) {
+    rows_.clear();
+    touched_.clear();
+    for (const CrackPair& pair : bodies.cracks()) add_row(scene, trial, pair.first, pair.second, pair.range);
+    for (const CrackPair& pair : near_) add_row(scene, trial, pair.first, pair.second, pair.range);
+    for (const LooseParticle& loose : bodies.debris())
+        for (std::size_t w = 0; w < scene.walls.size(); ++w)
+            add_row(scene, trial, loose.particle, -1 - static_cast<int>(w),
+                    ball_radius<Dim>(scene.volume[loose.particle]));
+    std::sort(touched_.begin(), touched_.end());
+    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+    v_after_grid_.clear();
+    for (const int p : touched_) v_after_grid_.push_back(trial.v[p]);
+}
+
+/// Returns by how much the impulse of a row has changed.
+template <int Dim>
+double LooseContact<Dim>::update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row) {
+    const auto give = [&](int p, const Vec<Dim>& J) {
+        const Vec<Dim> dv = J / scene.mass[p];
+        trial.v[p] += dv;
+        if (!trial.drift.empty()) trial.drift[p] += dv;
+    };
+    // What moves with the grid approaches with the velocity of the grid.
+    const std::span<Vec<Dim>> moving = trial.drift.empty() ? trial.v : trial.drift;
+    if (row.q >= 0) {
+        const double approach = row.n.dot(moving[row.p] - moving[row.q]) - row.gap_speed;
+        const double J = std::max(0.0, row.J + row.mass * approach), change = J - row.J;
+        row.J = J;
+        if (change != 0.0) {
+            give(row.p, -change * row.n);
+            give(row.q, change * row.n);
+        }
+        return std::abs(change);
+    }
+    const Wall<Dim>& wall = scene.walls[-1 - row.q];
+    const Vec<Dim> u = moving[row.p] - wall.velocity;
+    const double J = std::max(0.0, row.J - row.mass * (row.n.dot(u) + row.gap_speed)), change = J - row.J;
+    Vec<Dim> J_t = row.J_t - row.mass * (u - row.n.dot(u) * row.n);
+    const double size = J_t.norm(), most = wall.friction * J;
+    if (size > most) J_t *= most / size;
+    const Vec<Dim> given = change * row.n + J_t - row.J_t;
+    row.J = J;
+    row.J_t = J_t;
+    if (!given.isZero(0.0)) give(row.p, given);
+    return given.norm();
+}
+
+/// Works add up to the change of kinetic energy only with the velocities after all of contact: what the rule
+/// of the grid has booked for a particle is completed to (m/2) (v - v*).(v_before + v), v* before contact.
+template <int Dim>
+void LooseContact<Dim>::book(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                             const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
+                             ContactReport<Dim>& report) const {
+    double work = 0.0, by_walls = 0.0, by_friction = 0.0;
+    for (std::size_t k = 0; k < touched_.size(); ++k) {
+        const int p = touched_[k];
+        const Vec<Dim>&before = trial.v_before[p], &star = v_trial[bodies.order()[p]];
+        const auto done = [&](const Vec<Dim>& v) { return (v - star).dot(before + v); };
+        work += 0.5 * scene.mass[p] * (done(trial.v[p]) - done(v_after_grid_[k]));
+    }
+    for (const Row& row : rows_) {
+        if (row.J == 0.0) continue;
+        ++report.n_contacts;
+        if (row.q >= 0) {
+            report.grain_impulse[bodies.grain_of(bodies.body_of(row.p))] -= row.J * row.n;
+            report.grain_impulse[bodies.grain_of(bodies.body_of(row.q))] += row.J * row.n;
+            continue;
+        }
+        const std::size_t w = static_cast<std::size_t>(-1 - row.q);
+        const Vec<Dim> J = row.J * row.n + row.J_t, u = scene.walls[w].velocity;
+        report.grain_impulse[bodies.grain_of(bodies.body_of(row.p))] += J;
+        report.wall_impulse[w] -= J;
+        report.wall_moment[w] -= moment(scene.x[row.p], J);
+        by_walls += J.dot(u);
+        by_friction += row.J_t.dot(0.5 * (trial.v_before[row.p] + trial.v[row.p]) - u);
+    }
+    report.wall_work += by_walls;
+    report.friction_work += by_friction;
+    report.normal_work += work - by_walls - by_friction;
+}
+
+template <int Dim>
+void LooseContact<Dim>::add_impulses(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                                     const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
+                                     ContactReport<Dim>& report) {
+    const double ahead = faster_by_contact * trial.dt * trial.largest_speed;
+    if (!searched_ || !(scene.travelled + ahead < search_at_)) search(bodies, scene);
+    make_rows(bodies, scene, trial);
+    bool converged = rows_.empty();
+    for (int sweep = 0; sweep < options_.max_sweeps && !converged; ++sweep) {
+        double change = 0.0, total = 0.0;
+        const auto visit = [&](Row& row) {
+            change += update(scene, trial, row);
+            total += row.J;
+        };
+        if (sweep % 2 == 0)
+            std::for_each(rows_.begin(), rows_.end(), visit);
+        else
+            std::for_each(rows_.rbegin(), rows_.rend(), visit);
+        converged = change <= options_.tolerance * total;
+    }
+    report.converged = report.converged && converged;
+    book(bodies, scene, trial, v_trial, report);
+}
+
+template class LooseContact<2>;
+template class LooseContact<3>;
+
+}  // namespace quern

@@ -1,0 +1,79 @@
+// Contact that needs no surface: debris against everything, and the two faces of a crack inside one piece.
+//
+// A particle of debris is a ball of its own volume that does not turn, r = V^(1/n)/2 (n: dimension). It meets
+// every particle q of other pieces, as a ball of q's volume, and the walls. Two particles of one piece whose
+// bond of at most 1.5 dx is broken touch at 0.95 dx. One impulse a pair along the line of centres, one a wall
+// with Coulomb friction; projected Gauss-Seidel, after the rule of the grid (n from p to q, d distance):
+//
+//     pair      J' = max(0, J + m (n.(v_p - v_q) - max(g, 0)/dt)),   g = d - r_p - r_q,  1/m = 1/m_p + 1/m_q
+//     wall      J' = max(0, J - m_p (n.(v_p - u) + max(g, 0)/dt)),   g = n.(x_p - x_w) - r_p
+//               J_t' = projection onto |J_t| <= mu J' of J_t - m_p (v_p - u)_t
+//
+//     J [N s; 2D: N s/m], m [kg; 2D: kg/m], g, d, r [m], u velocity of the wall [m/s]
+//
+// Pairs push apart along their line and never pull: momentum and moment of momentum are exact, energy falls,
+// nothing sticks. Impulses do not undo an overlap, so nothing is thrown. Between particles there is no
+// friction: balls that do not turn would lose moment of momentum by it. Our own; faces of a crack as in
+// PeriDEM (Jha, Desai, Bhattacharya, Lipton, J. Mech. Phys. Solids 151 (2021) 104376, section 2.2: nodes of
+// one grain without a bond repel at 0.95 of the spacing), with impulses in the place of springs. What slides
+// along a crack by more than a bond can reach is not found again while the piece holds together.
+#pragma once
+
+#include <vector>
+
+#include "contact/bodies.hpp"
+#include "contact/point_cells.hpp"
+
+namespace quern {
+
+template <int Dim>
+class LooseContact {
+  public:
+    LooseContact(const CartesianGrid<Dim>& grid, const GridContactOptions& options)
+        : grid_(grid), nearest_(grid), options_(options) {}
+
+    /// Bodies are others than before: search anew.
+    void forget() { searched_ = false; }
+
+    /// Changes trial.v and adds to the report, whose impulses are those of grains. `scene` and `trial` are
+    /// those of the bodies, after the rule of the grid; v_trial [n]: velocities before it, of the grains.
+    void add_impulses(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                      const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
+                      ContactReport<Dim>& report);
+
+  private:
+    /// Two particles, or one and a wall (q = -1 - wall).
+    struct Row {
+        int p, q;
+        Vec<Dim> n;  ///< from p to q; out of the wall
+        double mass, gap_speed;
+        double J = 0.0;
+        Vec<Dim> J_t = Vec<Dim>::Zero();
+    };
+
+    void search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene);
+    void make_rows(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                   const ContactTrial<Dim>& trial);
+    void add_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, int p, int q, double range);
+    double update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row);
+    void book(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+              const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
+              ContactReport<Dim>& report) const;
+
+    CartesianGrid<Dim> grid_;
+    NearestImage<Dim> nearest_;
+    GridContactOptions options_;
+
+    // Of the last search.
+    bool searched_ = false;
+    double search_at_ = 0.0;       // of `travelled` [m]
+    std::vector<CrackPair> near_;  // pairs with debris in them, ascending
+    PointCells<Dim> cells_;
+
+    // Of this step.
+    std::vector<Row> rows_;
+    std::vector<int> touched_;            // particles with rows, ascending
+    std::vector<Vec<Dim>> v_after_grid_;  // of those
+};
+
+}  // namespace quern
