@@ -269,7 +269,8 @@ int parse_and_run(int argc, char** argv) {
         ->type_name("FILE");
     render_command
         .add_option("--field", arguments.render.field,
-                    "speed, velocity_x, damage, damage_z, grain, von_mises, pressure, stress_xx, "
+                    "speed, velocity_x, damage, damage_z, grain, fragment, von_mises, pressure, "
+                    "stress_xx, "
                     "principal_difference, "
                     "displacement...")
         ->type_name("NAME")

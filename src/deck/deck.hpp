@@ -123,6 +123,8 @@ struct ContactDeck {
     double friction = 0.0;  ///< between grains, where no pair of materials says otherwise
     std::vector<ContactPair> pairs;
     NodePairDeck node_pair;
+    bool fragments = true;         ///< fragments of a grain are bodies of their own; false: one body a grain
+    int debris = 16;               ///< pieces of fewer particles than this are debris, with either method
     double interior_weight = 1.0;  ///< q: weight of interior particles in the impulse map, in (0, 1]
     int max_sweeps = 50;
     double tolerance = 1e-3;  ///< sweeps end when sum|dJ| < tolerance * sum J_n

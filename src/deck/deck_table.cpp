@@ -233,7 +233,8 @@ Table<ContactDeck> contact_table() {
     using T = ContactDeck;
     Table<T> t;
     t.word("method", &T::method, {"grid", "node_pair"},
-           "On the grid, or between nodes; all keys but rule: none, friction, pairs and node_pair belong to "
+           "On the grid, or between nodes; all keys but rule: none, friction, pairs, debris and node_pair "
+           "belong to "
            "the grid");
     t.word("rule", &T::rule, {"none", "pair", "surface", "seed"},
            "No contact, pairs of grains on a node, surface particles on surfaces, or the seed rule");
@@ -243,6 +244,13 @@ Table<ContactDeck> contact_table() {
     t.word("coupling", &T::coupling, {"impulse", "flip"}, "How nodal changes reach the particles");
     t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient between grains");
     t.list("pairs", &T::pairs, pair_table(), "What holds between particular materials");
+    t.flag(
+        "fragments", &T::fragments,
+        "Fragments of a broken grain are grains of their own; false: one body a grain, as before it broke");
+    t.integer(
+        "debris", &T::debris, {1, 1000000, false, false, false},
+        "Pieces of fewer particles than this are debris: balls that do not turn; counted so with either "
+        "method");
     t.number("interior_weight", &T::interior_weight, "", fraction,
              "Weight of interior particles in an impulse");
     t.integer("max_sweeps", &T::max_sweeps, {1, 10000, false, false, false},

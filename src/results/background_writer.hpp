@@ -17,6 +17,7 @@ struct Packet {
     std::vector<HistoryRow> history;
     std::vector<GrainRow> grains;
     std::vector<ReactionRow> reactions;
+    std::vector<FragmentRow> fragments;
     Frame frame;
     bool has_frame = false;
 };

@@ -85,6 +85,7 @@ std::vector<Field> all_fields(int dimension) {
     fields.push_back({"damage", "", "damage"});
     fields.push_back({"damage_z", "", "largest stretch over critical"});
     fields.push_back({"grain", "", "grain", ColorScale::categorical});
+    fields.push_back({"fragment", "", "fragment", ColorScale::categorical});
     fields.push_back({"von_mises", "Pa", "von Mises stress"});
     fields.push_back({"pressure", "Pa", "pressure", ColorScale::diverging});
     fields.push_back({"principal_difference", "Pa", "principal stress difference"});
@@ -138,6 +139,10 @@ std::vector<double> make_field_values(const Field& field, const Frame& frame, co
         values.assign(frame.damage_z.begin(), frame.damage_z.end());
     } else if (name == "grain") {
         fill([&](std::size_t i) { return frame.grain[i]; });
+    } else if (name == "fragment") {
+        if (frame.fragment.size() != n)
+            throw InputError("field", "'fragment'", "another field", "no material of this run can break");
+        values.assign(frame.fragment.begin(), frame.fragment.end());
     } else if (name == "von_mises") {
         fill([&](std::size_t i) { return von_mises(stress_of(frame, i)); });
     } else if (name == "pressure") {

@@ -6,6 +6,7 @@
 //   damage                 fraction of broken bonds                                  [1]
 //   damage_z               largest bond stretch over the critical one                [1]
 //   grain                  number of the grain                                       [1]
+//   fragment               number of the piece                                       [1]
 //   von_mises              sqrt(3/2 s:s), s the deviator of the full 3D stress       [Pa]
 //   pressure               -(xx + yy + zz) / 3, compression positive                 [Pa]
 //   principal_difference   2D: in the plane, sqrt((xx - yy)^2 + 4 xy^2), what photoelastic fringes count;

@@ -14,7 +14,7 @@ struct FrameFileReader::Impl {
     std::string path;
     Hdf5Handle file;
     int dimension = 2;
-    bool has_damage_z = false;
+    bool has_damage_z = false, has_fragment = false;
     std::size_t n_frames = 0, n_particles = 0;
     std::string title;
     std::vector<double> domain, time, volume;
@@ -98,6 +98,8 @@ struct FrameFileReader::Impl {
         require("damage", shape("damage", 2), {n});
         has_damage_z = H5Lexists(file, "damage_z", H5P_DEFAULT) > 0;
         if (has_damage_z) require("damage_z", shape("damage_z", 2), {n});
+        has_fragment = H5Lexists(file, "fragment", H5P_DEFAULT) > 0;
+        if (has_fragment) require("fragment", shape("fragment", 2), {n});
         require("stress", shape("stress", 3), {n, d == 2 ? 4u : 6u});
         require("step", shape("step", 1), {});
         if (shape("volume", 1)[0] != n) fail("a dataset /volume that does not fit /grain");
@@ -158,11 +160,13 @@ Frame FrameFileReader::read(std::size_t index) const {
     frame.velocity.resize(n * d);
     frame.damage.resize(n);
     if (file.has_damage_z) frame.damage_z.resize(n);
+    if (file.has_fragment) frame.fragment.resize(n);
     frame.stress.resize(n * (d == 2 ? 4 : 6));
     file.read("position", H5T_NATIVE_DOUBLE, index, 1, frame.position);
     file.read("velocity", H5T_NATIVE_FLOAT, index, 1, frame.velocity);
     file.read("damage", H5T_NATIVE_FLOAT, index, 1, frame.damage);
     if (file.has_damage_z) file.read("damage_z", H5T_NATIVE_FLOAT, index, 1, frame.damage_z);
+    if (file.has_fragment) file.read("fragment", H5T_NATIVE_INT32, index, 1, frame.fragment);
     file.read("stress", H5T_NATIVE_FLOAT, index, 1, frame.stress);
     frame.grain = file.grain;
     frame.volume = file.volume;

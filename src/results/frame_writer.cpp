@@ -38,7 +38,7 @@ struct FrameFileWriter::Impl {
     std::string path;
     int dimension;
     Hdf5Handle file;
-    Hdf5Handle time, step, position, velocity, damage, damage_z, stress;
+    Hdf5Handle time, step, position, velocity, damage, damage_z, fragment, stress;
     hsize_t n_frames = 0, n_particles = 0;
 
     [[noreturn]] void fail(const std::string& deed) const {
@@ -121,6 +121,10 @@ struct FrameFileWriter::Impl {
         if (!first.damage_z.empty())
             damage_z = add_dataset("damage_z", single, {0, n}, Packing::deflated, "1",
                                    "largest bond stretch over the critical one, broken from 1 up");
+        if (!first.fragment.empty())
+            fragment =
+                add_dataset("fragment", H5T_STD_I32LE, {0, n}, Packing::deflated, "1",
+                            "fragment of each particle: grains as placed, then pieces as they broke off");
         stress = add_dataset("stress", single, {0, n, d == 2 ? 4u : 6u}, Packing::plain, "Pa",
                              fmt::format("Cauchy stress {}, tension positive", stress_components(dimension)));
         const Hdf5Handle grain = add_dataset("grain", H5T_STD_I32LE, {n}, Packing::deflated, "1",
@@ -149,8 +153,10 @@ struct FrameFileWriter::Impl {
                                             {&velocity, "velocity"},
                                             {&damage, "damage"},
                                             {&damage_z, "damage_z"},
+                                            {&fragment, "fragment"},
                                             {&stress, "stress"}}) {
-            if (dataset == &damage_z && H5Lexists(file, name, H5P_DEFAULT) <= 0) continue;
+            const bool optional = dataset == &damage_z || dataset == &fragment;
+            if (optional && H5Lexists(file, name, H5P_DEFAULT) <= 0) continue;
             *dataset = checked(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, "open a dataset");
             std::array<hsize_t, 3> shape{};
             const Hdf5Handle space = checked(H5Dget_space(*dataset), H5Sclose, "read a space");
@@ -186,6 +192,8 @@ struct FrameFileWriter::Impl {
                           frame.damage.size() == n && frame.volume.size() == n &&
                           (frame.damage_z.empty() || frame.damage_z.size() == n) &&
                           (n_frames == 0 || n == 0 || frame.damage_z.empty() == (damage_z < 0)) &&
+                          (frame.fragment.empty() || frame.fragment.size() == n) &&
+                          (n_frames == 0 || n == 0 || frame.fragment.empty() == (fragment < 0)) &&
                           frame.stress.size() == n * (d == 2 ? 4 : 6);
         if (!fits)
             throw std::invalid_argument(
@@ -233,8 +241,8 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::in
         impl_->open_datasets();
         return;
     }
-    for (const char* name :
-         {"time", "step", "position", "velocity", "damage", "damage_z", "stress", "grain", "volume"})
+    for (const char* name : {"time", "step", "position", "velocity", "damage", "damage_z", "fragment",
+                             "stress", "grain", "volume"})
         if (H5Lexists(impl_->file, name, H5P_DEFAULT) > 0)
             impl_->check(H5Ldelete(impl_->file, name, H5P_DEFAULT), "remove an old dataset");
 }
@@ -256,6 +264,7 @@ void FrameFileWriter::add(const Frame& frame) {
         file.append(file.velocity, H5T_NATIVE_FLOAT, frame.velocity.data());
         file.append(file.damage, H5T_NATIVE_FLOAT, frame.damage.data());
         if (file.damage_z >= 0) file.append(file.damage_z, H5T_NATIVE_FLOAT, frame.damage_z.data());
+        if (file.fragment >= 0) file.append(file.fragment, H5T_NATIVE_INT32, frame.fragment.data());
         file.append(file.stress, H5T_NATIVE_FLOAT, frame.stress.data());
     }
     file.append(file.step, H5T_NATIVE_INT64, &frame.step);
@@ -271,8 +280,8 @@ void FrameFileWriter::close() {
     if (file.file < 0) return;
     file.require_not_deleted();
     bool closed = true;
-    for (Hdf5Handle* dataset :
-         {&file.time, &file.step, &file.position, &file.velocity, &file.damage, &file.damage_z, &file.stress})
+    for (Hdf5Handle* dataset : {&file.time, &file.step, &file.position, &file.velocity, &file.damage,
+                                &file.damage_z, &file.fragment, &file.stress})
         closed = dataset->close() && closed;
     closed = file.file.close() && closed;
     if (!closed) file.fail("close the file");

@@ -79,6 +79,23 @@ std::string make_reaction(const ReactionRow& row, int dimension) {
                        json_number(row.work));
 }
 
+std::string make_vector(const double* values, int count) {
+    std::string text = "[";
+    for (int k = 0; k < count; ++k) text += (k > 0 ? ", " : "") + json_number(values[k]);
+    return text + "]";
+}
+
+std::string make_fragment(const FragmentRow& row, int dimension) {
+    return fmt::format(
+        "{{\"fragment\": {}, \"grain\": {}, \"parent\": {}, \"born\": {}, \"born_step\": {}, \"particles\": "
+        "{}, "
+        "\"mass\": {}, \"position\": {}, \"velocity\": {}, \"omega\": {}, \"stress\": {}, \"damage\": {}}}",
+        row.fragment, row.grain, row.parent, json_number(row.born), row.born_step, row.particles,
+        json_number(row.mass), make_vector(row.position, dimension), make_vector(row.velocity, dimension),
+        dimension == 2 ? json_number(row.omega[2]) : make_vector(row.omega, 3),
+        make_vector(row.stress, dimension == 2 ? 4 : 6), json_number(row.damage));
+}
+
 }  // namespace
 
 std::string json_string(std::string_view text) {
@@ -121,6 +138,8 @@ std::string make_summary_json(const Summary& summary) {
 
     Block reactions('[', ']', 1);
     for (const ReactionRow& row : summary.reactions) reactions.add(make_reaction(row, summary.dimension));
+    Block fragments('[', ']', 1);
+    for (const FragmentRow& row : summary.fragments) fragments.add(make_fragment(row, summary.dimension));
 
     Block block('{', '}', 0);
     block.add("version", json_string(summary.version));
@@ -147,6 +166,7 @@ std::string make_summary_json(const Summary& summary) {
     block.add("reactions", reactions.str());
     block.add("energy", make_energy(summary.energy, summary.residual_relative));
     block.add("momentum_error", momentum_error.str());
+    if (!summary.fragments.empty()) block.add("fragments", fragments.str());
     block.add("warnings", warnings.str());
     return block.str() + "\n";
 }

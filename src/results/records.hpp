@@ -20,8 +20,9 @@ struct Frame {
     std::vector<float> damage_z;   ///< [n] stretch of the worst bond over the critical; empty: none can break
     std::vector<float>
         stress;  ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
-    std::vector<std::int32_t> grain;  ///< [n]
-    std::vector<double> volume;       ///< [n] reference volume [m^2 | m^3]
+    std::vector<std::int32_t> grain;     ///< [n]
+    std::vector<std::int32_t> fragment;  ///< [n]; empty: none can break
+    std::vector<double> volume;          ///< [n] reference volume [m^2 | m^3]
     std::size_t n() const { return grain.size(); }
 };
 
@@ -42,6 +43,7 @@ struct HistoryRow {
     EnergyBudget energy;
     double momentum[3] = {0, 0, 0};          ///< [kg m/s]
     double angular_momentum[3] = {0, 0, 0};  ///< about the origin [kg m^2/s]; 2D: component 2
+    std::int64_t broken_bonds = 0, fragments = 0, debris = 0;  ///< debris: pieces
 };
 
 struct GrainRow {
@@ -64,6 +66,19 @@ struct ReactionRow {
     double work = 0;                     ///< done on the grains since the start [J]
 };
 
+/// A piece of a grain, or a grain that could break.
+struct FragmentRow {
+    double time = 0;
+    std::int64_t fragment = 0, grain = 0, parent = -1;  ///< parent -1: as placed
+    double born = 0;                                    ///< [s]
+    std::int64_t born_step = 0, particles = 0;
+    double mass = 0;                                          ///< [kg; 2D: kg/m]
+    double position[3] = {0, 0, 0}, velocity[3] = {0, 0, 0};  ///< of the centre of mass
+    double omega[3] = {0, 0, 0};                              ///< rate of rotation [rad/s]; 2D: component 2
+    double stress[6] = {0, 0, 0, 0, 0, 0};                    ///< mean, components as in Frame [Pa]
+    double damage = 0;                                        ///< mean fraction of broken bonds
+};
+
 struct Summary {
     std::string version, title, deck_hash, state_hash,
         outcome,       ///< "done", "interrupted", "failed: ..."
@@ -77,6 +92,7 @@ struct Summary {
     /// Contact nodes, pairs with a row, sweeps and searches, mean of a step.
     std::vector<std::pair<std::string, double>> contact_per_step;
     std::vector<ReactionRow> reactions;  ///< at the end
+    std::vector<FragmentRow> fragments;  ///< at the last frame
     EnergyBudget energy;
     double residual_relative = 0;      ///< |residual| / throughput, largest over the run
     double momentum_error_linear = 0;  ///< |p - p0 - impulses| / momentum scale, largest over the run
@@ -89,6 +105,7 @@ struct ResultPosition {
     std::int64_t n_frames = 0;
     std::int64_t history_bytes = 0, grains_bytes = 0, reactions_bytes = 0;
     std::int64_t xdmf_bytes = 0, pvd_bytes = 0;  ///< without the closing tags
+    std::int64_t fragments_bytes = 0;
 };
 
 }  // namespace quern

@@ -9,8 +9,8 @@ namespace quern {
 struct RenderOptions {
     std::string directory;        ///< of a finished run
     std::string file;             ///< .png; with frame = "all": pattern, number goes before ".png"
-    std::string field = "speed";  ///< speed, velocity_x.., damage, damage_z, grain, von_mises, pressure,
-                                  ///< stress_xx.., principal_difference, displacement
+    std::string field = "speed";  ///< speed, velocity_x.., damage, damage_z, grain, fragment, von_mises,
+                                  ///< pressure, stress_xx.., principal_difference, displacement
     std::string frame = "last";   ///< last, all, or a number from 0
     int width = 1200, height = 900;
 };

@@ -37,8 +37,8 @@ constexpr std::size_t long_packet = 4096;
 /// A directory that can be written to, without what would tell of another run.
 const std::string& make_run_directory(const WriterOptions& options) {
     create_directory(options.directory);
-    for (const char* name :
-         {"summary.json", "results.pvd", "strength.csv", "checkpoint.h5", "checkpoint.previous.h5"}) {
+    for (const char* name : {"summary.json", "results.pvd", "strength.csv", "fragments.csv", "checkpoint.h5",
+                             "checkpoint.previous.h5"}) {
         std::error_code error;
         if (options.resumed && name != std::string_view("summary.json")) continue;
         std::filesystem::remove(options.directory + "/" + name, error);
@@ -73,6 +73,7 @@ std::vector<std::string> history_columns(int dimension) {
              {"momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"})
             columns.push_back(name);
     }
+    for (const char* name : {"broken_bonds", "fragments", "debris"}) columns.push_back(name);
     return columns;
 }
 
@@ -84,6 +85,21 @@ std::vector<std::string> grain_columns(int dimension) {
 std::vector<std::string> reaction_columns(int dimension) {
     if (dimension == 2) return {"time", "name", "x", "y", "ux", "uy", "fx", "fy", "moment", "work"};
     return {"time", "name", "x", "y", "z", "ux", "uy", "uz", "fx", "fy", "fz", "mx", "my", "mz", "work"};
+}
+
+std::vector<std::string> fragment_columns(int dimension) {
+    std::vector<std::string> columns = {"time", "fragment",  "grain",     "parent",
+                                        "born", "born_step", "particles", "mass"};
+    const std::vector<const char*> rest =
+        dimension == 2
+            ? std::vector<const char*>{"x",         "y",         "vx",        "vy",        "omega",
+                                       "stress_xx", "stress_yy", "stress_xy", "stress_zz", "damage"}
+            : std::vector<const char*>{"x",         "y",         "z",         "vx",
+                                       "vy",        "vz",        "omega_x",   "omega_y",
+                                       "omega_z",   "stress_xx", "stress_yy", "stress_zz",
+                                       "stress_xy", "stress_yz", "stress_xz", "damage"};
+    columns.insert(columns.end(), rest.begin(), rest.end());
+    return columns;
 }
 
 struct ResultWriter::Files {
@@ -100,6 +116,11 @@ struct ResultWriter::Files {
         grains.write(header(grain_columns(dimension)));
         reactions.write(header(reaction_columns(dimension)));
         for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
+        if (options.fragments) {
+            fragments.emplace(directory + "/fragments.csv");
+            fragments->write(header(fragment_columns(dimension)));
+            fragments->flush();
+        }
         if (options.vtp) vtp.emplace(directory);
     }
     Files(const WriterOptions& options, const ResultPosition& position)
@@ -111,6 +132,7 @@ struct ResultWriter::Files {
           reactions(directory + "/reactions.csv", position.reactions_bytes),
           frames(directory + "/results.h5", dimension, position.n_frames),
           xdmf(directory + "/results.xdmf", dimension, position) {
+        if (options.fragments) fragments.emplace(directory + "/fragments.csv", position.fragments_bytes);
         if (options.vtp) vtp.emplace(directory, position);
     }
 
@@ -118,10 +140,12 @@ struct ResultWriter::Files {
     void write(const HistoryRow& row);
     void write(const GrainRow& row);
     void write(const ReactionRow& row);
+    void write(const FragmentRow& row);
 
     std::string directory;
     int dimension;
     OutputFile log, history, grains, reactions;
+    std::optional<OutputFile> fragments;
     FrameFileWriter frames;
     XdmfFile xdmf;
     std::optional<VtpSeries> vtp;
@@ -177,8 +201,14 @@ void ResultWriter::add_reaction(const ReactionRow& row) {
     hand_over_if_long();
 }
 
+void ResultWriter::add_fragment(const FragmentRow& row) {
+    packet_.fragments.push_back(row);
+    hand_over_if_long();
+}
+
 void ResultWriter::hand_over_if_long() {
-    if (packet_.history.size() + packet_.grains.size() + packet_.reactions.size() >= long_packet) hand_over();
+    const std::size_t n = packet_.history.size() + packet_.grains.size() + packet_.reactions.size();
+    if (n + packet_.fragments.size() >= long_packet) hand_over();
 }
 
 void ResultWriter::hand_over() {
@@ -186,6 +216,7 @@ void ResultWriter::hand_over() {
     packet_.history.clear();
     packet_.grains.clear();
     packet_.reactions.clear();
+    packet_.fragments.clear();
     packet_.has_frame = false;
 }
 
@@ -193,12 +224,18 @@ void ResultWriter::flush() {
     hand_over();
     background_->wait();
     for (OutputFile* table : {&files_->history, &files_->grains, &files_->reactions}) table->flush();
+    if (files_->fragments) files_->fragments->flush();
 }
 
 ResultPosition ResultWriter::position() {
     flush();
-    return {files_->frames.n_frames(), files_->history.size(), files_->grains.size(),
-            files_->reactions.size(),  files_->xdmf.bytes(),   files_->vtp ? files_->vtp->bytes() : 0};
+    return {files_->frames.n_frames(),
+            files_->history.size(),
+            files_->grains.size(),
+            files_->reactions.size(),
+            files_->xdmf.bytes(),
+            files_->vtp ? files_->vtp->bytes() : 0,
+            files_->fragments ? files_->fragments->size() : 0};
 }
 
 double ResultWriter::busy_seconds() const {
@@ -217,11 +254,13 @@ void ResultWriter::Files::write(const Packet& packet) {
     for (const HistoryRow& row : packet.history) write(row);
     for (const GrainRow& row : packet.grains) write(row);
     for (const ReactionRow& row : packet.reactions) write(row);
+    for (const FragmentRow& row : packet.fragments) write(row);
     if (!packet.has_frame) return;
     frames.add(packet.frame);
     xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty());
     if (vtp) vtp->add(packet.frame);
     for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
+    if (fragments) fragments->flush();
 }
 
 void ResultWriter::Files::write(const HistoryRow& row) {
@@ -231,7 +270,7 @@ void ResultWriter::Files::write(const HistoryRow& row) {
                                    e.fracture, e.transfer_loss, e.external_work, e.residual, e.throughput);
     line += cells(row.momentum, dimension);
     line += dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
-    history.write(line + "\n");
+    history.write(fmt::format("{},{},{},{}\n", line, row.broken_bonds, row.fragments, row.debris));
 }
 
 void ResultWriter::Files::write(const GrainRow& row) {
@@ -245,6 +284,15 @@ void ResultWriter::Files::write(const ReactionRow& row) {
     reactions.write(fmt::format("{},{}{}{}{}{},{}\n", row.time, csv_text(row.name), cells(row.position, d),
                                 cells(row.displacement, d), cells(row.force, d),
                                 d == 2 ? fmt::format(",{}", row.moment[2]) : cells(row.moment, 3), row.work));
+}
+
+void ResultWriter::Files::write(const FragmentRow& row) {
+    const int d = dimension;
+    fragments->write(fmt::format(
+        "{},{},{},{},{},{},{},{}{}{}{},{},{}\n", row.time, row.fragment, row.grain, row.parent, row.born,
+        row.born_step, row.particles, row.mass, cells(row.position, d), cells(row.velocity, d),
+        d == 2 ? fmt::format(",{}", row.omega[2]) : cells(row.omega, 3),
+        fmt::join(std::begin(row.stress), std::begin(row.stress) + (d == 2 ? 4 : 6), ","), row.damage));
 }
 
 }  // namespace quern

@@ -15,15 +15,17 @@ struct WriterOptions {
     std::string directory;  ///< created, with its parents
     int dimension = 2;
     bool vtp = false;
+    bool fragments = false;                      ///< grains can break: fragments.csv
     std::string title = {};                      ///< of the pictures
     std::vector<double> domain = {};             ///< lower, then upper corner [m], 2 * dimension; empty: none
     std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
 };
 
-/// Names of the columns of history.csv, grains.csv and reactions.csv, in their order.
+/// Names of the columns of history.csv, grains.csv, reactions.csv and fragments.csv, in their order.
 std::vector<std::string> history_columns(int dimension);
 std::vector<std::string> grain_columns(int dimension);
 std::vector<std::string> reaction_columns(int dimension);
+std::vector<std::string> fragment_columns(int dimension);
 
 /// Files of one run. Rows and frames are written on a thread of their own, in the order in which they were
 /// added; an add waits only while the frame before is still being written. Any failure to write throws
@@ -44,6 +46,7 @@ class ResultWriter {
     void add_history(const HistoryRow& row);    ///< history.csv
     void add_grain(const GrainRow& row);        ///< grains.csv
     void add_reaction(const ReactionRow& row);  ///< reactions.csv
+    void add_fragment(const FragmentRow& row);  ///< fragments.csv
     void flush();                               ///< until all that was added is on disk
     ResultPosition position();                  ///< flushes
     void finish(const Summary& summary);        ///< summary.json; flushes and closes all, ends the thread

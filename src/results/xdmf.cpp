@@ -31,14 +31,14 @@ std::string attribute(const std::string& name, const char* type, const std::stri
                        name, type, data);
 }
 
-/// One frame of a dataset [F, n] of floats.
-std::string scalar_of(const char* dataset, std::size_t frame, std::size_t n) {
+/// One frame of a dataset [F, n] of numbers of four bytes.
+std::string scalar_of(const char* dataset, const char* type, std::size_t frame, std::size_t n) {
     return fmt::format(
         "<DataItem ItemType=\"HyperSlab\" Dimensions=\"{0}\">"
         "<DataItem Dimensions=\"3 2\" Format=\"XML\">{1} 0 1 1 1 {0}</DataItem>"
-        "<DataItem Dimensions=\"{2} {0}\" NumberType=\"Float\" Precision=\"4\" Format=\"HDF\">"
+        "<DataItem Dimensions=\"{2} {0}\" NumberType=\"{4}\" Precision=\"4\" Format=\"HDF\">"
         "results.h5:/{3}</DataItem></DataItem>",
-        n, frame, frame + 1, dataset);
+        n, frame, frame + 1, dataset, type);
 }
 
 }  // namespace
@@ -51,7 +51,7 @@ XdmfFile::XdmfFile(std::string path, int dimension, const ResultPosition& positi
       dimension_(dimension),
       n_frames_(static_cast<std::size_t>(position.n_frames)) {}
 
-void XdmfFile::add(double time, std::size_t n, bool has_damage_z) {
+void XdmfFile::add(double time, std::size_t n, bool breakable) {
     const std::size_t f = n_frames_++;
     const int d = dimension_;
     const std::vector<const char*> axes = {"xx", "yy", d == 2 ? "xy" : "zz", d == 2 ? "zz" : "xy",
@@ -72,8 +72,11 @@ void XdmfFile::add(double time, std::size_t n, bool has_damage_z) {
     for (int k = 0; k < n_stress; ++k)
         grid += attribute(fmt::format("stress_{}", axes[static_cast<std::size_t>(k)]), "Scalar",
                           frame_of("stress", 4, f, n, n_stress, k, 1));
-    grid += attribute("damage", "Scalar", scalar_of("damage", f, n));
-    if (has_damage_z) grid += attribute("damage_z", "Scalar", scalar_of("damage_z", f, n));
+    grid += attribute("damage", "Scalar", scalar_of("damage", "Float", f, n));
+    if (breakable) {
+        grid += attribute("damage_z", "Scalar", scalar_of("damage_z", "Float", f, n));
+        grid += attribute("fragment", "Scalar", scalar_of("fragment", "Int", f, n));
+    }
     grid += attribute("grain", "Scalar",
                       fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"Int\" Precision=\"4\" "
                                   "Format=\"HDF\">results.h5:/grain</DataItem>",

@@ -1,5 +1,6 @@
 #include "src/sim/checkpoint.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 namespace quern {
@@ -31,14 +32,29 @@ void pass_contact(Checkpoint& checkpoint, Scene<Dim>& scene) {
     checkpoint.vector("slip against", memory.partner);
     checkpoint.vector("slip", memory.slip);
     checkpoint.vector("wall velocity before", memory.wall_velocity);
-    if (!checkpoint.loading()) return;
-    pairs->recall(memory, scene.particles.x.size());
-    const ContactScene<Dim> view = scene.contact_scene();
-    for (std::size_t g = 0; g < scene.torn.size(); ++g) {
-        const int grain = static_cast<int>(g);
-        std::vector<BrokenBond> broken = scene.broken_bonds(grain);
-        if (!broken.empty()) pairs->set_broken(view, grain, std::move(broken));
+    if (checkpoint.loading()) pairs->recall(memory, scene.particles.x.size());
+}
+
+void pass_fragments(Checkpoint& checkpoint, Fragments& fragments) {
+    if (fragments.of_particle.empty()) return;
+    std::vector<std::int64_t> numbers;
+    std::vector<double> born;
+    for (const Fragment& f : fragments.all) {
+        numbers.insert(numbers.end(), {f.parent, f.grain, f.particles, f.step});
+        born.push_back(f.born);
     }
+    checkpoint.vector("fragments", numbers);
+    checkpoint.vector("fragments born", born);
+    fragments.all.clear();
+    for (std::size_t k = 0; k < born.size(); ++k) {
+        const std::int64_t* f = numbers.data() + 4 * k;
+        fragments.all.push_back({f[0], f[1], f[2], f[3], born[k]});
+    }
+    std::vector<std::int64_t> wide(fragments.of_particle.begin(), fragments.of_particle.end());
+    checkpoint.array("fragment of particle", std::span(wide));
+    std::transform(wide.begin(), wide.end(), fragments.of_particle.begin(),
+                   [](std::int64_t number) { return static_cast<std::int32_t>(number); });
+    checkpoint.array("broken bonds", std::span(fragments.broken));
 }
 
 }  // namespace
@@ -57,7 +73,9 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
         checkpoint.value("wall velocity", wall.velocity);
     }
     checkpoint.value("travelled", scene.travelled);
+    pass_fragments(checkpoint, scene.fragments);
     pass_contact(checkpoint, scene);
+    if (checkpoint.loading()) recall_broken_bonds(scene);
     pass_ledger(checkpoint, now.ledger);
     checkpoint.array("grain impulse", std::span(now.grain_impulse));
     for (Reaction<Dim>& reaction : now.reactions) {
@@ -106,6 +124,7 @@ void pass_position(Checkpoint& checkpoint, ResultPosition& position) {
     checkpoint.value("reactions bytes", position.reactions_bytes);
     checkpoint.value("xdmf bytes", position.xdmf_bytes);
     checkpoint.value("pvd bytes", position.pvd_bytes);
+    checkpoint.value("fragments bytes", position.fragments_bytes);
 }
 
 template void pass_state(Checkpoint&, Scene<2>&, StepContext<2>&);

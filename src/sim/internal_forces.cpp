@@ -64,9 +64,7 @@ class TaskForces {
             scene_.group_of(g).model);
     }
 
-    void mark_torn(int g) const {
-        if (!scene_.torn.empty()) scene_.torn[static_cast<std::size_t>(g)] = 1;
-    }
+    void mark_torn(int g) const { scene_.torn[static_cast<std::size_t>(g)] = 1; }
 
     /// Energy that the bonds of a grain set free between the bytes `intact` and now.
     double released(int g, const GrainView<Dim>& view, std::span<const std::uint8_t> intact) const {

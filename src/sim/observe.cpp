@@ -5,6 +5,7 @@
 #include <cstring>
 #include <numbers>
 
+#include "contact/slot.hpp"
 #include "grid/parallel.hpp"
 
 namespace quern {
@@ -113,6 +114,11 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
         row.angular_momentum[2] = m.angular[0];
     else
         for (int a = 0; a < 3; ++a) row.angular_momentum[a] = m.angular[a];
+    const Fragments& fragments = scene.fragments;
+    row.broken_bonds = fragments.n_broken();
+    row.debris = fragments.n_debris();
+    row.fragments =
+        fragments.all.empty() ? static_cast<std::int64_t>(scene.grains.size()) : fragments.n_fragments();
     return row;
 }
 
@@ -198,6 +204,7 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
     frame.stress.resize(n * n_components);
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;
+    frame.fragment = scene.fragments.of_particle;
     for (const MaterialGroup<Dim>& group : scene.groups)
         std::visit(
             [&](const auto& model) {
@@ -237,6 +244,71 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
 }
 
 template <int Dim>
+std::vector<FragmentRow> fragment_rows(const Scene<Dim>& scene, const StepContext<Dim>& now,
+                                       const Frame& frame) {
+    constexpr std::size_t n_components = Dim == 2 ? 4 : 6;
+    const Fragments& fragments = scene.fragments;
+    struct Sums {
+        double volume = 0.0, dx = 0.0;
+        Vec<Dim> mx = Vec<Dim>::Zero(), mv = Vec<Dim>::Zero();
+        Spin<Dim> L = Spin<Dim>::Zero();
+        Mat<Dim> second = Mat<Dim>::Zero();
+    };
+    std::vector<FragmentRow> rows(fragments.all.size());
+    std::vector<Sums> sums(rows.size());
+    const auto for_each_particle = [&](auto&& visit) {
+        for (const Grain<Dim>& grain : scene.grains)
+            for (int p = grain.first; p < grain.first + grain.count && !rows.empty(); ++p) {
+                const std::size_t k = static_cast<std::size_t>(fragments.of_particle[p]);
+                sums[k].dx = grain.shape->dx * grain.scale;
+                visit(p, rows[k], sums[k]);
+            }
+    };
+    for_each_particle([&](int p, FragmentRow& row, Sums& sum) {
+        const double m = scene.particles.mass[p], V = scene.particles.volume[p];
+        row.mass += m;
+        sum.volume += V;
+        sum.mx += m * scene.particles.x[p];
+        sum.mv += m * velocity_now(scene, now, p);
+        for (std::size_t c = 0; c < n_components; ++c)
+            row.stress[c] += V * frame.stress[n_components * static_cast<std::size_t>(p) + c];
+        row.damage += V * frame.damage[static_cast<std::size_t>(p)];
+    });
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        const Fragment& from = fragments.all[k];
+        FragmentRow& row = rows[k];
+        row.time = now.time;
+        row.fragment = static_cast<std::int64_t>(k);
+        row.grain = from.grain;
+        row.parent = from.parent;
+        row.born = from.born;
+        row.born_step = from.step;
+        row.particles = from.particles;
+        sums[k].mx /= row.mass;
+        sums[k].mv /= row.mass;
+        for (int a = 0; a < Dim; ++a) {
+            row.position[a] = sums[k].mx[a];
+            row.velocity[a] = sums[k].mv[a];
+        }
+        for (std::size_t c = 0; c < n_components; ++c) row.stress[c] /= sums[k].volume;
+        row.damage /= sums[k].volume;
+    }
+    for_each_particle([&](int p, FragmentRow&, Sums& sum) {
+        const double m = scene.particles.mass[p];
+        const Vec<Dim> r = scene.particles.x[p] - sum.mx;
+        sum.L += moment(r, Vec<Dim>(m * (velocity_now(scene, now, p) - sum.mv)));
+        sum.second += m * r * r.transpose();
+    });
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        Eigen::Matrix<double, n_spin<Dim>, n_spin<Dim>> inverse;  // 0 for a point or a line: it does not turn
+        invert_inertia(sums[k].second, rows[k].mass, sums[k].dx, inverse);
+        const Spin<Dim> omega = inverse * sums[k].L;
+        for (int a = 0; a < n_spin<Dim>; ++a) rows[k].omega[Dim == 2 ? 2 : a] = omega[a];
+    }
+    return rows;
+}
+
+template <int Dim>
 std::string state_hash(const Scene<Dim>& scene) {
     std::uint64_t hash = 14695981039346656037ull;
     const auto add = [&](const Vec<Dim>& v) {
@@ -261,6 +333,8 @@ template class GrainTracker<2>;
 template class GrainTracker<3>;
 template void make_frame<2>(const Scene<2>&, const StepContext<2>&, Frame&);
 template void make_frame<3>(const Scene<3>&, const StepContext<3>&, Frame&);
+template std::vector<FragmentRow> fragment_rows<2>(const Scene<2>&, const StepContext<2>&, const Frame&);
+template std::vector<FragmentRow> fragment_rows<3>(const Scene<3>&, const StepContext<3>&, const Frame&);
 template std::string state_hash<2>(const Scene<2>&);
 template std::string state_hash<3>(const Scene<3>&);
 

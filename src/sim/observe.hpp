@@ -70,6 +70,11 @@ class GrainTracker {
 template <int Dim>
 void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& frame);
 
+/// Every fragment of a grain that can break, by number; `frame`: made of the same state.
+template <int Dim>
+std::vector<FragmentRow> fragment_rows(const Scene<Dim>& scene, const StepContext<Dim>& now,
+                                       const Frame& frame);
+
 /// FNV-1a over positions and velocities of all particles, grain by grain in the deck's order.
 template <int Dim>
 std::string state_hash(const Scene<Dim>& scene);

@@ -134,6 +134,7 @@ class Run {
         out.directory = options_.directory;
         out.dimension = Dim;
         out.vtp = deck_.output.vtp;
+        out.fragments = !scene_->fragments.of_particle.empty();
         out.title = deck_.title;
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a]);
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a] + deck_.grid.extent[a]);
@@ -293,6 +294,7 @@ class Run {
             }
             if (frames_.due(now_.time, now_.dt) || last) {
                 make_frame(*scene_, now_, frame_);
+                write_fragments();
                 frame_ = writer_->add_frame(std::move(frame_));
             }
             progress.update(now_.step, now_.time, observer_.residual_relative());
@@ -323,6 +325,14 @@ class Run {
         summary_.momentum_error_angular = observer_.momentum_error_angular();
         if (row.energy.residual > 0.2 * row.energy.throughput && row.energy.residual > round_off_energy())
             throw SimulationError(unstable_message(row.energy));
+    }
+
+    void write_fragments() {
+        summary_.fragments = fragment_rows(*scene_, now_, frame_);
+        for (const FragmentRow& row : summary_.fragments) {
+            writer_->add_fragment(row);
+            if (record_) record_->fragments.push_back(row);
+        }
     }
 
     /// Energy of strains of 1e-10: below it, what is left of a grain at rest is the round-off of its

@@ -21,6 +21,7 @@ struct RunRecord {
     std::vector<HistoryRow> history;
     std::vector<GrainRow> grains;        ///< as in grains.csv: by time, tracked grains in the deck's order
     std::vector<ReactionRow> reactions;  ///< as in reactions.csv
+    std::vector<FragmentRow> fragments;  ///< as in fragments.csv
 };
 
 enum class RunOutcome { done, interrupted };

@@ -84,6 +84,7 @@ GridContactOptions contact_options(const ContactDeck& deck) {
     options.interior_weight = deck.interior_weight;
     options.max_sweeps = deck.max_sweeps;
     options.tolerance = deck.tolerance;
+    options.debris = deck.debris;
     options.skin = deck.skin;
     options.tile = deck.tile;
     options.curvature = deck.curvature;
@@ -229,9 +230,6 @@ void add_node_pairs(const Deck& deck, Scene<Dim>& scene) {
     scene.contact.emplace(std::in_place_type<NodePairContact<Dim>>, scene.grid,
                           std::span<const Grain<Dim>>(scene.grains), scene.particles.volume,
                           std::move(bodies), pair_laws(deck), options);
-    const bool breakable = std::any_of(scene.groups.begin(), scene.groups.end(),
-                                       [](const auto& group) { return group.breakable; });
-    if (options.self_contact && breakable) scene.torn.assign(scene.grains.size(), 0);
 }
 
 template <int Dim>
@@ -435,6 +433,8 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     set_cracks(deck, *scene);
     set_no_fail(deck, *scene);
     check_overlap(deck, *scene);
+    start_fragments(*scene, deck.contact.debris);
+    scene->contact_in_pieces = deck.contact.fragments;
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();
     scene->particles.v.assign(n, Vec<Dim>::Zero());

@@ -13,6 +13,7 @@
 #include "particles/peridynamic_model.hpp"
 #include "particles/union_batch.hpp"
 #include "src/deck/deck.hpp"
+#include "src/sim/fragments.hpp"
 
 namespace quern {
 
@@ -94,7 +95,9 @@ struct Scene {
     std::vector<std::array<Expression, Dim>> wall_velocity;
     FrictionTable friction;
     std::optional<ContactMethod<Dim>> contact;
-    std::vector<std::uint8_t> torn;  ///< [n_grains] lost bonds in this step; empty: nobody asks
+    std::vector<std::uint8_t> torn;  ///< [n_grains] lost bonds in this step; empty: none can
+    Fragments fragments;
+    bool contact_in_pieces = true;  ///< on the grid the fragments of a grain are bodies of their own
     double travelled = 0.0;  ///< sum over the steps of the longest way that a particle or a wall has gone [m]
     Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
     double mass_damping = 0.0;            ///< [1/s]

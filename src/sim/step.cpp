@@ -157,26 +157,12 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
     }
 }
 
-/// Tells contact which bonds are gone, of the grains that have lost some, in the order of the grains.
-template <int Dim>
-void hand_over_broken_bonds(Scene<Dim>& scene, const ContactScene<Dim>& view, StepContext<Dim>& now) {
-    for (std::size_t g = 0; g < scene.torn.size(); ++g) {
-        if (!scene.torn[g]) continue;
-        scene.torn[g] = 0;
-        const int grain = static_cast<int>(g);
-        // What the springs of a new crack begin with comes from what its bonds have set free.
-        now.ledger.past.fracture -=
-            std::get<NodePairContact<Dim>>(*scene.contact).set_broken(view, grain, scene.broken_bonds(grain));
-    }
-}
-
 template <int Dim>
 void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     if (!scene.contact) return;
     const ContactScene<Dim> view = scene.contact_scene();
     double fastest = now.largest_speed;
     for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
-    hand_over_broken_bonds(scene, view, now);
     const bool springs = node_pairs(scene);
     const ContactTrial<Dim> trial{
         now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first};
@@ -289,7 +275,9 @@ void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
     steer_walls(scene, now);
     {
         const StageTimer timer(now.stages.internal_forces);
+        const std::int64_t broken = now.newly_broken;
         compute_internal_forces(scene, now);
+        if (now.newly_broken != broken) update_fragments(scene, now);
     }
     {
         const StageTimer timer(now.stages.loads);

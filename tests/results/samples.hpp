@@ -59,7 +59,10 @@ inline Frame make_sample_frame(int dimension, int number) {
             frame.velocity.push_back(static_cast<float>((c == 0 ? 1.0 : 0.1) * grain + 1e-3 * p));
         }
         frame.damage.push_back(static_cast<float>(p % 7) / 7.0F);
-        if (dimension == 3) frame.damage_z.push_back(static_cast<float>(p % 11) / 5.0F);
+        if (dimension == 3) {
+            frame.damage_z.push_back(static_cast<float>(p % 11) / 5.0F);
+            frame.fragment.push_back(static_cast<std::int32_t>(p % 7));
+        }
         for (int c = 0; c < (dimension == 2 ? 4 : 6); ++c)
             frame.stress.push_back(static_cast<float>(1e4 * (p - n_grain) + 10.0 * c + number));
         frame.grain.push_back(grain);

@@ -71,6 +71,7 @@ TEST_CASE("FrameFileWriter: frames are read back bit by bit") {
             CHECK(read.velocity == wrote.velocity);
             CHECK(read.damage == wrote.damage);
             CHECK(read.damage_z == wrote.damage_z);
+            CHECK(read.fragment == wrote.fragment);
             CHECK(read.damage_z.empty() == (dimension == 2));
             CHECK(read.stress == wrote.stress);
             CHECK(read.grain == wrote.grain);
@@ -177,11 +178,23 @@ TEST_CASE("FrameFileWriter: frames that do not fit are refused") {
 TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") {
     const ScratchDirectory scratch;
     for (const int dimension : {2, 3}) {
-        ResultWriter writer({.directory = scratch.path("run"), .dimension = dimension});
+        ResultWriter writer({.directory = scratch.path("run"), .dimension = dimension, .fragments = true});
         HistoryRow history{.time = 0.1,
                            .energy = {.kinetic = 1.0 / 3.0, .residual = -1e-300, .throughput = 2}};
         history.momentum[0] = 4, history.angular_momentum[2] = 5;
+        history.broken_bonds = 6, history.fragments = 7, history.debris = 8;
         writer.add_history(history);
+        FragmentRow fragment{.time = 0.3,
+                             .fragment = 2,
+                             .grain = 1,
+                             .parent = 1,
+                             .born = 0.25,
+                             .born_step = 9,
+                             .particles = 4,
+                             .mass = 5,
+                             .damage = 0.5};
+        fragment.position[1] = 6, fragment.velocity[0] = 7, fragment.omega[2] = 8, fragment.stress[3] = -9;
+        writer.add_fragment(fragment);
         GrainRow grain{.time = 0.2, .grain = 7, .angle = 8, .omega = 9};
         grain.position[1] = 1, grain.velocity[0] = 2, grain.force[2] = 3;
         writer.add_grain(grain);
@@ -194,11 +207,19 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
               std::string("time,kinetic,elastic,contact_elastic,gravity,damping,friction,contact_loss,"
                           "fracture,transfer_loss,"
                           "external_work,residual,throughput,") +
-                  (plane ? "momentum_x,momentum_y,angular_momentum\n"
+                  (plane ? "momentum_x,momentum_y,angular_momentum,broken_bonds,fragments,debris\n"
                          : "momentum_x,momentum_y,momentum_z,angular_momentum_x,angular_momentum_y,"
-                           "angular_momentum_z\n") +
+                           "angular_momentum_z,broken_bonds,fragments,debris\n") +
                   "0.1,0.3333333333333333,0,0,0,0,0,0,0,0,0,-1e-300,2," +
-                  (plane ? "4,0,5\n" : "4,0,0,0,0,5\n"));
+                  (plane ? "4,0,5,6,7,8\n" : "4,0,0,0,0,5,6,7,8\n"));
+        CHECK(
+            read_text(scratch.path("run/fragments.csv")) ==
+            (plane
+                 ? "time,fragment,grain,parent,born,born_step,particles,mass,x,y,vx,vy,omega,stress_xx,"
+                   "stress_yy,stress_xy,stress_zz,damage\n0.3,2,1,1,0.25,9,4,5,0,6,7,0,8,0,0,0,-9,0.5\n"
+                 : "time,fragment,grain,parent,born,born_step,particles,mass,x,y,z,vx,vy,vz,omega_x,omega_y,"
+                   "omega_z,stress_xx,stress_yy,stress_zz,stress_xy,stress_yz,stress_xz,damage\n"
+                   "0.3,2,1,1,0.25,9,4,5,0,6,0,7,0,0,0,0,8,0,0,0,-9,0,0,0.5\n"));
         CHECK(read_text(scratch.path("run/grains.csv")) ==
               (plane ? "time,grain,x,y,vx,vy,angle,omega,fx,fy\n0.2,7,0,1,2,0,8,9,0,0\n"
                      : "time,grain,x,y,z,vx,vy,vz,angle,omega,fx,fy,fz\n0.2,7,0,1,0,2,0,0,8,9,0,0,3\n"));

@@ -76,7 +76,7 @@ void check_killed(const Case& c, int signal, const std::vector<int>& kills) {
     CHECK(n_resumed > 0);
     CHECK(contains(read_file(out + "/run.log"), "goes on from step"));
     CHECK(hash_in(out) == hash_in(whole));
-    for (const char* name : {"history.csv", "grains.csv", "reactions.csv", "results.xdmf"})
+    for (const char* name : {"history.csv", "grains.csv", "reactions.csv", "fragments.csv", "results.xdmf"})
         CHECK_MESSAGE(read_file(out + "/" + name) == read_file(whole + "/" + name), name);
 }
 
