@@ -15,7 +15,7 @@ BondNetwork<Dim>::BondNetwork(const Shape<Dim>& shape, const Material& material,
     : material_(material),
       kernel_(kernel),
       bonds_(make_bonds(shape, material)),
-      limit_(make_break_limit<Dim>(material, bonds_.horizon)) {
+      limit_(make_break_limit<Dim>(material, bonds_)) {
     const auto check = [&](const char* key, double value) {
         if (!(value > 0.0))
             throw InputError(fmt::format("material '{}': {}", material.name, key),
