@@ -38,9 +38,7 @@ struct Stepped {
         const TempFolder folder;
         const Deck deck = read_deck(folder.write("deck.yaml", text), overrides);
         scene = make_scene<2>(deck);
-        now.dt = 0.5 * scene->stable_step();
-        now.grain_impulse.assign(scene->grains.size(), Vec<2>::Zero());
-        now.wall_impulse.assign(scene->walls.size(), Vec<2>::Zero());
+        now = make_context(*scene, 0.5 * scene->stable_step());
     }
     const Vec<2>& X(int p) const { return scene->grains[0].shape->X[p]; }
     /// Breaks all bonds of grain 0 between nodes of different sides.
