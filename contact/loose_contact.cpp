@@ -9,22 +9,21 @@ namespace quern {
 namespace {
 
 /// Of the largest ball of debris, how much further than touching a search looks.
-constexpr double skin = 1.0;
+constexpr double skin = 3.0;
 /// No contact makes a particle approach another this many times faster than anything moved before.
-constexpr double faster_than_fastest = 10.0;
+constexpr double faster_than_fastest = 4.0;
 /// Contact may make a body this much faster than what moves without it.
 constexpr double faster_by_contact = 2.0;
-
-template <int Dim>
-double ball_radius(double volume) {
-    return 0.5 * std::pow(volume, 1.0 / Dim);
-}
 
 }  // namespace
 
 template <int Dim>
 void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene) {
     near_.clear();
+    if (!searched_) {
+        radius_.clear();
+        for (const double volume : scene.volume) radius_.push_back(0.5 * std::pow(volume, 1.0 / Dim));
+    }
     searched_ = true;
     if (bodies.debris().empty()) {
         search_at_ = std::numeric_limits<double>::infinity();
@@ -32,18 +31,17 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
     }
     double of_debris = 0.0, of_all = 0.0;
     for (const LooseParticle& loose : bodies.debris())
-        of_debris = std::max(of_debris, ball_radius<Dim>(scene.volume[loose.particle]));
-    for (const double volume : scene.volume) of_all = std::max(of_all, ball_radius<Dim>(volume));
+        of_debris = std::max(of_debris, radius_[loose.particle]);
+    for (const double radius : radius_) of_all = std::max(of_all, radius);
     const double margin = skin * of_debris;
     const int n_bodies = static_cast<int>(scene.grains.size());
     cells_.sort(scene.x, of_debris + of_all + margin, &grid_);
     for (const LooseParticle& loose : bodies.debris()) {
         const int p = loose.particle;
-        const double r_p = ball_radius<Dim>(scene.volume[p]);
         cells_.visit_near(scene.x[p], [&](int q) {
             const int other = bodies.body_of(q);
             if (other == loose.body || (other >= n_bodies && q < p)) return;
-            const double range = r_p + ball_radius<Dim>(scene.volume[q]);
+            const double range = radius_[p] + radius_[q];
             const double far = range + margin;
             if (nearest_(scene.x[p], scene.x[q]).squaredNorm() < far * far) near_.push_back({p, q, range});
         });
@@ -58,11 +56,13 @@ template <int Dim>
 void LooseContact<Dim>::add_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, int p, int q,
                                 double range) {
     Row row{p, q, Vec<Dim>::Zero(), scene.mass[p], 0.0};
+    const double reach = faster_than_fastest * trial.largest_speed * trial.dt;
     double gap = -range;
     if (q >= 0) {
         const Vec<Dim> d = nearest_(scene.x[p], scene.x[q]);
-        const double distance = d.norm();
-        if (!(distance > 0.0)) return;
+        const double squared = d.squaredNorm();
+        if (!(squared > 0.0) || squared > (range + reach) * (range + reach)) return;
+        const double distance = std::sqrt(squared);
         row.n = d / distance;
         row.mass = scene.mass[p] * scene.mass[q] / (scene.mass[p] + scene.mass[q]);
         gap += distance;
@@ -71,8 +71,8 @@ void LooseContact<Dim>::add_row(const ContactScene<Dim>& scene, const ContactTri
         row.n = wall.normal;
         gap += wall.distance(scene.x[p]);
     }
+    if (gap > reach) return;
     row.gap_speed = std::max(gap, 0.0) / trial.dt;
-    if (row.gap_speed > faster_than_fastest * trial.largest_speed) return;
     rows_.push_back(row);
     touched_.push_back(p);
     if (q >= 0) touched_.push_back(q);
@@ -87,8 +87,7 @@ void LooseContact<Dim>::make_rows(const ContactBodies<Dim>& bodies, const Contac
     for (const CrackPair& pair : near_) add_row(scene, trial, pair.first, pair.second, pair.range);
     for (const LooseParticle& loose : bodies.debris())
         for (std::size_t w = 0; w < scene.walls.size(); ++w)
-            add_row(scene, trial, loose.particle, -1 - static_cast<int>(w),
-                    ball_radius<Dim>(scene.volume[loose.particle]));
+            add_row(scene, trial, loose.particle, -1 - static_cast<int>(w), radius_[loose.particle]);
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     v_after_grid_.clear();

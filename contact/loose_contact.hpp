@@ -64,6 +64,8 @@ class LooseContact {
     NearestImage<Dim> nearest_;
     GridContactOptions options_;
 
+    std::vector<double> radius_;  // [n] of the particles as balls [m]
+
     // Of the last search.
     bool searched_ = false;
     double search_at_ = 0.0;       // of `travelled` [m]
