@@ -230,6 +230,7 @@ Shape<3> make_shells_shape(double radius, int n) {
 template void move_to_centre_of_mass(Shape<2>&);
 template void move_to_centre_of_mass(Shape<3>&);
 template Shape<2> make_lattice_shape(const Ball<2>&, const Vec<2>&);
+template Shape<2> make_lattice_shape(const Ellipse&, const Vec<2>&);
 template Shape<2> make_lattice_shape(const Polygon&, const Vec<2>&);
 template Shape<3> make_lattice_shape(const Ball<3>&, const Vec<3>&);
 template Shape<3> make_lattice_shape(const Cuboid&, const Vec<3>&);

@@ -3,6 +3,7 @@
 // Nodes come out in the frame of their centre of mass; the volumes sum to the measure of the true solid.
 #pragma once
 
+#include "particles/ellipse.hpp"
 #include "particles/shape.hpp"
 #include "particles/solids.hpp"
 
@@ -18,7 +19,7 @@ namespace quern {
 /// is exactly one node of every lattice row that crosses it steepest: a closed layer, one node thick, and the
 /// surface enters no other node's cell. delta is between 0 and one spacing.
 ///
-/// Solid: Ball<Dim>, Polygon (2D) or Cuboid (3D). No nodes come out if no cell centre lies inside.
+/// Solid: Ball<Dim>, Ellipse or Polygon (2D) or Cuboid (3D). No nodes come out if no cell centre lies inside.
 template <int Dim, class Solid>
 Shape<Dim> make_lattice_shape(const Solid& solid, const Vec<Dim>& spacing);
 

@@ -26,7 +26,7 @@ struct Place {
     std::string text() const;  ///< "file:line: key"
 };
 
-enum class ShapeKind { disk, rectangle, regular_polygon, polygon, sphere, box, mesh };
+enum class ShapeKind { disk, rectangle, regular_polygon, polygon, sphere, box, mesh, ellipse };
 enum class Filling {
     lattice,
     rings,
@@ -40,6 +40,7 @@ struct ShapeDeck {
     double radius = 0.0;                          ///< disk, sphere; circumradius of a regular polygon [m]
     int sides = 0;                                ///< regular polygon
     Numbers3 size{};                              ///< rectangle, box: edge lengths [m]
+    std::array<double, 2> semi_axes{};            ///< ellipse: along x and y [m]
     std::vector<std::array<double, 2>> vertices;  ///< polygon, counter-clockwise [m]
     std::string file;                             ///< mesh: path of the .msh, relative to the deck's folder
     double unit = 1.0;                            ///< mesh: metres per unit of length in the file
@@ -49,6 +50,7 @@ struct ShapeDeck {
 
 struct GrainDeck {
     std::string shape, material;
+    std::string group;  ///< a name by which loads, constraints and outputs choose it; may be empty
     double scale = 1.0;
     Numbers3 position{};
     Numbers3 angle{};  ///< rotation vector [rad]; 2D: component 2 (about z)
@@ -140,6 +142,7 @@ struct ContactDeck {
 /// Body force on grains: an acceleration, or a force per volume, as functions of x, y, z, t.
 struct LoadDeck {
     std::vector<int> grains;           ///< empty: all
+    std::vector<std::string> groups;   ///< beside numbers, until make_deck has put numbers in their place
     std::optional<Expression> region;  ///< of reference x, y, z (as placed at t = 0); non-zero: inside
     bool per_mass = true;              ///< true: acceleration [m/s^2]; false: force density [N/m^3]
     std::vector<Expression> value;     ///< one an axis
@@ -148,7 +151,8 @@ struct LoadDeck {
 
 /// Prescribed velocity of particles, per axis (no value: free).
 struct ConstraintDeck {
-    std::vector<int> grains;  ///< empty: all
+    std::vector<int> grains;          ///< empty: all
+    std::vector<std::string> groups;  ///< as in LoadDeck
     std::optional<Expression> region;
     std::array<std::optional<Expression>, 3> velocity;  ///< of x, y, z, t (current position) [m/s]
     Place place;
@@ -160,8 +164,9 @@ enum class PlaceFrame { world, shape };
 /// A cut that grains have from the start: from `from` to `to` in 2D; in 3D a parallelogram with `edge` as its
 /// other edge.
 struct CrackDeck {
-    std::vector<int> grains;  ///< empty: all
-    std::string shape;        ///< only grains of this shape; empty: all
+    std::vector<int> grains;          ///< empty: all
+    std::vector<std::string> groups;  ///< as in LoadDeck
+    std::string shape;                ///< only grains of this shape; empty: all
     PlaceFrame frame = PlaceFrame::world;
     Numbers3 from{}, to{};  ///< [m]
     Numbers3 edge{};        ///< [m]
@@ -171,6 +176,7 @@ struct CrackDeck {
 /// Where bonds never break: those with an end in the region.
 struct NoFailDeck {
     std::vector<int> grains;
+    std::vector<std::string> groups;  ///< as in LoadDeck
     std::string shape;
     PlaceFrame frame = PlaceFrame::world;
     std::optional<Expression> region;  ///< of x, y, z; non-zero: inside
@@ -208,9 +214,10 @@ struct CheckpointDeck {
 };
 
 struct OutputDeck {
-    double interval = 0.0;          ///< frames of results.h5 [s]; 0: 100 frames in the run
-    double history_interval = 0.0;  ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
-    std::vector<int> track;         ///< grains in grains.csv
+    double interval = 0.0;            ///< frames of results.h5 [s]; 0: 100 frames in the run
+    double history_interval = 0.0;    ///< rows of history.csv and grains.csv [s]; 0: 1000 rows in the run
+    std::vector<int> track;           ///< grains in grains.csv
+    std::vector<std::string> groups;  ///< as in LoadDeck, of track
     bool track_all = false;
     bool vtp = false;  ///< also a .vtp series
     CheckpointDeck checkpoint;

@@ -85,8 +85,9 @@ void finish_grid(GridDeck& grid, const Cursor& at, const Context& now);
 
 /// Key of grain numbers.
 Key grain_ids_key(const char* name, const char* about);
-/// Adds to `ids` what it says; nothing for the word all.
-void read_grain_ids(std::vector<int>& ids, const Cursor& at, const Context& now, const Key& key);
+/// Adds to `ids` and `groups` what it says; nothing for the word all.
+void read_grain_ids(std::vector<int>& ids, std::vector<std::string>& groups, const Cursor& at,
+                    const Context& now, const Key& key);
 
 /// The word of a shape's type: "disk", ...
 const std::vector<std::string>& shape_types();

@@ -286,15 +286,15 @@ Table<DampingInput> damping_table() {
     return t;
 }
 
-/// `grains`: all, or a list of numbers; an empty list stands for all.
+/// `grains`: all, a group, or a list of numbers and groups; no number and no group stand for all.
 template <class T>
 void add_ids(Table<T>& t, const char* name, std::type_identity_t<std::vector<int> T::*> member,
-             const char* about) {
+             std::type_identity_t<std::vector<std::string> T::*> groups, const char* about) {
     const Key key = grain_ids_key(name, about);
     t.add(
         key,
         [=](T& target, const Cursor& at, const Context& now) {
-            read_grain_ids(target.*member, at, now, key);
+            read_grain_ids(target.*member, target.*groups, at, now, key);
         },
         [=](const T& target, int) { return (target.*member).empty() ? "all" : ids_text(target.*member); });
 }
@@ -302,7 +302,7 @@ void add_ids(Table<T>& t, const char* name, std::type_identity_t<std::vector<int
 Table<LoadInput> load_table() {
     using T = LoadInput;
     Table<T> t;
-    add_ids(t, "grains", &T::grains, "Grains it acts on");
+    add_ids(t, "grains", &T::grains, &T::groups, "Grains it acts on");
     t.formula("region", &T::region, in_place, "Acts where this is not 0, by the place at t = 0");
     t.formulas("acceleration", &T::acceleration, "m/s^2", in_all, "Force per mass; or give force_density");
     t.formulas("force_density", &T::force_density, "N/m^3", in_all, "Force per volume");
@@ -321,7 +321,7 @@ Table<LoadInput> load_table() {
 Table<ConstraintDeck> constraint_table() {
     using T = ConstraintDeck;
     Table<T> t;
-    add_ids(t, "grains", &T::grains, "Grains it holds");
+    add_ids(t, "grains", &T::grains, &T::groups, "Grains it holds");
     t.formula("region", &T::region, in_place, "Holds particles where this is not 0, by the place at t = 0");
     const Key velocity{.name = "velocity",
                        .form = Form::formulas,
@@ -382,14 +382,14 @@ Table<OutputDeck> output_table() {
     t.number_or("interval", &T::interval, "auto", "s", positive, "Between frames; auto: 100 frames");
     t.number_or("history_interval", &T::history_interval, "auto", "s", positive,
                 "Between rows of history.csv and grains.csv; auto: 1000 rows");
-    add_ids(t, "track", &T::track, "Grains in grains.csv");
+    add_ids(t, "track", &T::track, &T::groups, "Grains in grains.csv");
     // Unlike loads, an output tracks none by default, and says so with an empty list.
     Field<T>& track = t.fields.back();
     const auto read_ids = track.read;
     track.read = [read_ids](T& output, const Cursor& at, const Context& now) {
         if (at.node().kind == Node::Kind::list && at.node().items.empty()) return;
         read_ids(output, at, now);
-        output.track_all = output.track.empty();
+        output.track_all = output.track.empty() && output.groups.empty();
     };
     track.write = [](const T& output, int) { return output.track_all ? "all" : ids_text(output.track); };
     t.flag("vtp", &T::vtp, "Also a series of .vtp files");

@@ -4,6 +4,12 @@
 namespace quern {
 namespace {
 
+/// A word that is no number.
+bool is_group_name(const Cursor& at, const Context& now) {
+    return at.node().kind == Node::Kind::scalar &&
+           !now.parameters.resolve(at.node(), at.where(), Parameters::Wanted::number).number;
+}
+
 /// Which grains, and what places are measured in.
 template <class T>
 void add_target(Table<T>& t, const char* about) {
@@ -11,7 +17,7 @@ void add_target(Table<T>& t, const char* about) {
     t.add(
         grains,
         [grains](T& target, const Cursor& at, const Context& now) {
-            read_grain_ids(target.grains, at, now, grains);
+            read_grain_ids(target.grains, target.groups, at, now, grains);
         },
         [](const T& target, int) { return target.grains.empty() ? "all" : ids_text(target.grains); });
     t.text("shape", &T::shape, "Of these only grains of this shape");
@@ -63,16 +69,25 @@ Key grain_ids_key(const char* name, const char* about) {
     return {.name = name, .form = Form::ids, .range = not_negative, .about = about};
 }
 
-void read_grain_ids(std::vector<int>& ids, const Cursor& at, const Context& now, const Key& key) {
+void read_grain_ids(std::vector<int>& ids, std::vector<std::string>& groups, const Cursor& at,
+                    const Context& now, const Key& key) {
     if (says(at, now, "all")) return;
+    Key entry = key;
+    if (at.node().kind == Node::Kind::scalar && is_group_name(at, now)) {
+        groups.push_back(read_text(at, now, entry));
+        return;
+    }
     if (at.node().kind != Node::Kind::list || at.node().items.empty()) {
         const bool list = at.node().kind == Node::Kind::list;
         throw InputError(at.where(), list ? "an empty list" : at.node().description(), key.expectation(2));
     }
-    Key id = key;
-    id.form = Form::integer;
-    for (std::size_t i = 0; i < at.node().items.size(); ++i)
-        ids.push_back(read_integer(at.entry(i), now, id));
+    entry.form = Form::integer;
+    for (std::size_t i = 0; i < at.node().items.size(); ++i) {
+        if (is_group_name(at.entry(i), now))
+            groups.push_back(read_text(at.entry(i), now, entry));
+        else
+            ids.push_back(read_integer(at.entry(i), now, entry));
+    }
 }
 
 }  // namespace quern

@@ -42,6 +42,7 @@ const Column columns[] = {
     {"spin_z", component<&GrainDeck::spin, 2>, nullptr, 3},
     {"shape", nullptr, [](GrainDeck& grain) { return &grain.shape; }, 0},
     {"material", nullptr, [](GrainDeck& grain) { return &grain.material; }, 0},
+    {"group", nullptr, [](GrainDeck& grain) { return &grain.group; }, 0},
 };
 
 std::vector<std::string_view> split_cells(std::string_view line) {
@@ -121,8 +122,10 @@ class GrainFile {
         for (std::size_t i = 0; i < cells.size(); ++i) {
             const std::string place = fmt::format("column {} ({})", i + 1, header_[i]->name);
             if (header_[i]->text) {
-                if (cells[i].empty()) throw InputError(where(place), "nothing", "a name");
+                const bool group = std::string_view(header_[i]->name) == "group";
+                if (cells[i].empty() && !group) throw InputError(where(place), "nothing", "a name");
                 *header_[i]->text(grain) = std::string(cells[i]);
+                if (group && !cells[i].empty()) check_group_name(grain.group, where(place));
             } else {
                 *header_[i]->number(grain) = read_cell(cells[i], place, *header_[i]);
             }

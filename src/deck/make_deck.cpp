@@ -109,6 +109,29 @@ void check_ids(const std::vector<int>& ids, std::size_t n_grains, const std::str
     }
 }
 
+/// Puts the grains of groups beside the numbers: in order, each once.
+void add_groups(const Deck& deck, std::vector<int>& ids, std::vector<std::string>& groups,
+                const std::string& where) {
+    for (const std::string& group : groups) {
+        std::vector<std::string> known;
+        const std::size_t before = ids.size();
+        for (std::size_t i = 0; i < deck.grains.size(); ++i) {
+            const std::string& name = deck.grains[i].group;
+            if (name == group) ids.push_back(static_cast<int>(i));
+            if (!name.empty() && std::find(known.begin(), known.end(), name) == known.end())
+                known.push_back(name);
+        }
+        if (ids.size() > before) continue;
+        known.push_back("all");
+        throw InputError(where, fmt::format("the unknown group '{}'", group),
+                         "a group among " + join(known) + ", or grain numbers", did_you_mean(group, known));
+    }
+    if (groups.empty()) return;
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    groups.clear();
+}
+
 void check_walls(const Deck& deck) {
     for (std::size_t i = 0; i < deck.walls.size(); ++i) {
         check_wall(deck.walls[i], deck.grid, deck.dimension);
@@ -156,18 +179,23 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
                    [&] { return place_text(grain.place, "material"); });
         check_grain(grain, deck, i);
     }
-    const std::size_t n = deck.grains.size();
-    for (const LoadDeck& load : deck.loads) check_ids(load.grains, n, place_text(load.place, "grains"));
-    for (const ConstraintDeck& held : deck.constraints)
-        check_ids(held.grains, n, place_text(held.place, "grains"));
-    const auto check_target = [&](const auto& target) {
-        check_ids(target.grains, n, place_text(target.place, "grains"));
+    const auto settle = [&](std::vector<int>& ids, std::vector<std::string>& groups,
+                            const std::string& where) {
+        check_ids(ids, deck.grains.size(), where);
+        add_groups(deck, ids, groups, where);
+    };
+    for (std::vector<LoadDeck>* loads : {&deck.loads, &deck.prepare.loads})
+        for (LoadDeck& load : *loads) settle(load.grains, load.groups, place_text(load.place, "grains"));
+    for (ConstraintDeck& held : deck.constraints)
+        settle(held.grains, held.groups, place_text(held.place, "grains"));
+    const auto settle_target = [&](auto& target) {
+        settle(target.grains, target.groups, place_text(target.place, "grains"));
         if (target.shape.empty()) return;
         check_name(target.shape, shapes, "shape", [&] { return place_text(target.place, "shape"); });
     };
-    for (const CrackDeck& crack : deck.cracks) check_target(crack);
-    for (const NoFailDeck& zone : deck.no_fail) check_target(zone);
-    check_ids(deck.output.track, n, at.where("output.track"));
+    for (CrackDeck& crack : deck.cracks) settle_target(crack);
+    for (NoFailDeck& zone : deck.no_fail) settle_target(zone);
+    settle(deck.output.track, deck.output.groups, at.where("output.track"));
     return deck;
 }
 

@@ -52,6 +52,7 @@ Table<ArrayInput> array_table() {
 void finish_grain(GrainInput& grain, const Cursor& at, const Context& now) {
     grain.place = at.place();
     grain.has_position = at.has("position");
+    if (at.has("group")) check_group_name(grain.group, at.where("group"));
     const int n_ways = static_cast<int>(grain.has_position) + (grain.file ? 1 : 0) + (grain.array ? 1 : 0);
     if (n_ways != 1) {
         throw InputError(at.where(), n_ways == 0 ? "none of position, file, array" : "more than one of them",
@@ -169,11 +170,11 @@ Table<ShapeDeck> shape_table() {
     Table<T> t;
     t.type_of = [](const T& shape) { return shape_types()[static_cast<std::size_t>(shape.kind)]; };
     t.word("type", &T::kind, shape_types(),
-           "disk, rectangle, regular_polygon and polygon in 2D; sphere and box in 3D; mesh in both")
+           "disk, ellipse, rectangle, regular_polygon and polygon in 2D; sphere and box in 3D; mesh in both")
         .require();
     t.word("filling", &T::filling, {"lattice", "rings", "mesh"},
            "Square lattice, concentric rings or shells (disk, sphere), or a mesh by gmsh")
-        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "ellipse"});
     t.number("radius", &T::radius, "m", positive, "Radius; of the corners for a regular polygon")
         .require()
         .only_for({"disk", "regular_polygon", "sphere"});
@@ -181,6 +182,25 @@ Table<ShapeDeck> shape_table() {
         .require()
         .only_for({"regular_polygon"});
     t.vector("size", &T::size, "m", positive, "Edge lengths").require().only_for({"rectangle", "box"});
+    const Key axes{.name = "semi_axes",
+                   .form = Form::pair,
+                   .unit = "m",
+                   .range = positive,
+                   .about = "Half the lengths along x and y"};
+    t.add(
+         axes,
+         [axes](T& shape, const Cursor& at, const Context& now) {
+             check_size(at, 2, axes, now.dimension);
+             Key half = axes;
+             half.form = Form::number;
+             for (std::size_t i = 0; i < 2; ++i) shape.semi_axes[i] = read_number(at.entry(i), now, half);
+         },
+         [](const T& shape, int) {
+             return shape.semi_axes[0] > 0.0 ? vector_text({shape.semi_axes[0], shape.semi_axes[1], 0.0}, 2)
+                                             : std::string();
+         })
+        .require()
+        .only_for({"ellipse"});
     const Key points{.name = "vertices", .form = Form::points, .unit = "m", .about = "Corners in order"};
     t.add(
          points,
@@ -215,7 +235,7 @@ Table<ShapeDeck> shape_table() {
     t.number("unit", &T::unit, "m", positive, "Length of one unit of the file").only_for({"mesh"});
     t.number("spacing", &T::spacing, "m", positive, "Wanted distance between particles")
         .require()
-        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box"});
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "ellipse"});
     t.finish = finish_shape;
     return t;
 }
@@ -225,6 +245,7 @@ Table<GrainInput> grain_table() {
     Table<T> t;
     t.text("shape", &T::shape, "Name of a shape; may come from the file's column");
     t.text("material", &T::material, "Name of a material; may come from the file's column");
+    t.text("group", &T::group, "Name by which loads, constraints and output choose it; column: may be empty");
     t.number("scale", &T::scale, "", positive, "Size relative to the shape");
     t.vector("position", &T::position, "m", any_number, "Centre of mass; or give file or array");
     t.turn("angle", &T::angle, "rad", "Rotation about z; rotation vector in 3D");
@@ -244,7 +265,7 @@ Table<GrainInput> grain_table() {
 
 const std::vector<std::string>& shape_types() {
     static const std::vector<std::string> types = {
-        "disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "mesh"};
+        "disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "mesh", "ellipse"};
     return types;
 }
 

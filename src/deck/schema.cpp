@@ -82,6 +82,8 @@ std::string value_schema(const Key& key) {
             return fmt::format(R"({{"anyOf": [{}, {}]}})", number, list_schema(number, 3, 3));
         case Form::pair:
             return list_schema(number, 2, 2);
+        case Form::numbers:
+            return list_schema(number, 1, 0);
         case Form::counts:
             return list_schema(whole, 2, 3);
         case Form::points:
@@ -95,7 +97,7 @@ std::string value_schema(const Key& key) {
         case Form::names:
             return list_schema(R"({"type": "string"})", 2, 2);
         case Form::ids:
-            return fmt::format(R"({{"anyOf": [{{"const": "all"}}, {}]}})", list_schema(whole, 0, 0));
+            return fmt::format(R"({{"anyOf": [{{"type": "string"}}, {}]}})", list_schema(whole, 0, 0));
         case Form::section:
             return object_schema(key.children);
         case Form::list:
@@ -155,6 +157,8 @@ std::string type_text(const Key& key) {
             return "number; 3D: vector";
         case Form::pair:
             return "[number, number]";
+        case Form::numbers:
+            return "list of numbers";
         case Form::counts:
             return "vector of whole numbers";
         case Form::points:
@@ -168,7 +172,7 @@ std::string type_text(const Key& key) {
         case Form::names:
             return "[name, name]";
         case Form::ids:
-            return "all, list of grain numbers";
+            return "all, group, list of grain numbers and groups";
         case Form::section:
             return "section";
         case Form::list:
@@ -201,17 +205,24 @@ void add_reference(std::string& text, const std::string& path, const std::vector
 
 }  // namespace
 
+std::string schema_text(const std::vector<Key>& keys, const std::string& title) {
+    const std::string head = fmt::format(
+        R"("$schema": "https://json-schema.org/draft/2020-12/schema", "title": {}, )", json_text(title));
+    return object_schema(keys).insert(1, head) + "\n";
+}
+
+std::string reference_text(const std::vector<Key>& keys) {
+    std::string text;
+    add_reference(text, "", keys);
+    return text;
+}
+
 std::string deck_schema() {
-    std::string schema = object_schema(keys_of(deck_table()));
-    return schema.insert(
-               1, R"("$schema": "https://json-schema.org/draft/2020-12/schema", "title": "Quern deck", )") +
-           "\n";
+    return schema_text(keys_of(deck_table()), "Quern deck");
 }
 
 std::string deck_reference() {
-    std::string text;
-    add_reference(text, "", keys_of(deck_table()));
-    return text;
+    return reference_text(keys_of(deck_table()));
 }
 
 }  // namespace quern

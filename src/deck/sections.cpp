@@ -77,8 +77,9 @@ void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now) {
     const bool both = shape.kind == ShapeKind::mesh;
     if (!both && solid != (now.dimension == 3)) {
         throw InputError(at.where("type"), shape_types()[static_cast<std::size_t>(shape.kind)],
-                         now.dimension == 2 ? "one of disk, rectangle, regular_polygon, polygon, mesh"
-                                            : "one of sphere, box, mesh",
+                         now.dimension == 2
+                             ? "one of disk, ellipse, rectangle, regular_polygon, polygon, mesh"
+                             : "one of sphere, box, mesh",
                          fmt::format("the deck is {}D", now.dimension));
     }
     const bool round = shape.kind == ShapeKind::disk || shape.kind == ShapeKind::sphere;
@@ -98,6 +99,7 @@ void finish_shape(ShapeDeck& shape, const Cursor& at, const Context& now) {
     const double sizes[] = {shape.size[0], shape.size[1], now.dimension == 3 ? shape.size[2] : shape.size[1]};
     double width =
         shape.radius > 0.0 ? 2.0 * shape.radius : *std::min_element(std::begin(sizes), std::end(sizes));
+    if (shape.kind == ShapeKind::ellipse) width = 2.0 * std::min(shape.semi_axes[0], shape.semi_axes[1]);
     if (shape.kind == ShapeKind::polygon) {
         double area = 0.0;
         for (std::size_t i = 0; i < shape.vertices.size(); ++i) {

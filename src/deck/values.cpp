@@ -63,6 +63,8 @@ std::string Key::expectation(int deck_dimension) const {
             return deck_dimension == 2 ? "a number" + numbers : "a list of 3 numbers" + numbers;
         case Form::pair:
             return "a list of 2 numbers" + numbers;
+        case Form::numbers:
+            return "a list of numbers" + numbers;
         case Form::counts:
             return fmt::format("a list of {} whole numbers{}", deck_dimension, numbers);
         case Form::points:
@@ -76,7 +78,7 @@ std::string Key::expectation(int deck_dimension) const {
         case Form::names:
             return "a list of 2 names";
         case Form::ids:
-            return "all or a list of grain numbers (from 0)";
+            return "all, a group, or a list of grain numbers (from 0) and groups";
         case Form::section:
             return "a section";
         case Form::list:
@@ -220,6 +222,14 @@ void check_names(const Cursor& at, const std::vector<std::string>& names) {
         throw InputError(at.where(name), "an unknown key", "one of " + join(names),
                          did_you_mean(name, names));
     }
+}
+
+void check_group_name(const std::string& name, const std::string& where) {
+    if (!name.empty() && name != "all" && !split_number(name) &&
+        name.find_first_of(",#") == std::string::npos)
+        return;
+    throw InputError(where, "'" + name + "'", "the name of a group",
+                     "no number at its beginning, not all, no comma");
 }
 
 std::string number_text(double value) {

@@ -40,13 +40,14 @@ enum class Form {
     vector,    ///< a number an axis
     turn,      ///< a number in 2D, a vector in 3D
     pair,      ///< two numbers
+    numbers,   ///< a list of numbers
     counts,    ///< an integer an axis
     points,    ///< a list of pairs
     formula,   ///< of the variables in `words`
     formulas,  ///< a formula an axis; `words` as above
     axes,      ///< a list of axis letters
     names,     ///< a list of two names
-    ids,       ///< all, or a list of grain numbers
+    ids,       ///< all, the name of a group, or a list of grain numbers and names
     section,
     list,   ///< of sections
     named,  ///< sections by name
@@ -93,6 +94,13 @@ void check_list(const Cursor& at);
 void check_size(const Cursor& at, std::size_t size, const Key& key, int dimension);
 /// Throws InputError if the section at the cursor has a name that is none of `names`.
 void check_names(const Cursor& at, const std::vector<std::string>& names);
+
+/// Throws InputError unless `grains` can call a group by this name: no number, not "all", no comma.
+void check_group_name(const std::string& name, const std::string& where);
+
+/// Keys as JSON Schema (draft 2020-12), and as Markdown.
+std::string schema_text(const std::vector<Key>& keys, const std::string& title);
+std::string reference_text(const std::vector<Key>& keys);
 
 // Writers: YAML in one line.
 std::string number_text(double value);  ///< shortest text that reads back to the same bits

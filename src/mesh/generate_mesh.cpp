@@ -69,6 +69,23 @@ ElementMesh<2> generate_mesh(const Ball<2>& disk, double spacing) {
     });
 }
 
+ElementMesh<2> generate_mesh(const Ellipse& ellipse, double spacing) {
+    const Vec<2> axes = ellipse.high();
+    const double size = axes.maxCoeff();
+    return mesh_with_gmsh<2>(size, spacing, [&] {
+        namespace geo = gmsh::model::geo;
+        const double a = axes[0] / size, b = axes[1] / size;
+        const int centre = geo::addPoint(0, 0, 0);
+        const std::vector<int> rim{geo::addPoint(a, 0, 0), geo::addPoint(0, b, 0), geo::addPoint(-a, 0, 0),
+                                   geo::addPoint(0, -b, 0)};
+        const int longest = a >= b ? rim[0] : rim[1];
+        std::vector<int> arcs;
+        for (int i = 0; i < 4; ++i)
+            arcs.push_back(geo::addEllipseArc(rim[i], centre, longest, rim[(i + 1) % 4]));
+        draw_plane_surface(arcs);
+    });
+}
+
 ElementMesh<2> generate_mesh(const Polygon& polygon, double spacing) {
     const double size = (polygon.high() - polygon.low()).maxCoeff();
     return mesh_with_gmsh<2>(size, spacing, [&] {

@@ -167,14 +167,19 @@ std::vector<Vec<2>> regular_vertices(double radius, int sides) {
 }
 
 [[noreturn]] void refuse_kind(const ShapeDeck& deck, const char* kind, int dim) {
-    throw InputError(where(deck, "kind"), fmt::format("{} in {}D", kind, dim),
-                     dim == 2 ? "disk, rectangle, regular_polygon, polygon or mesh" : "sphere, box or mesh");
+    throw InputError(
+        where(deck, "kind"), fmt::format("{} in {}D", kind, dim),
+        dim == 2 ? "disk, ellipse, rectangle, regular_polygon, polygon or mesh" : "sphere, box or mesh");
 }
 
 Shape<2> build(const ShapeDeck& deck, std::integral_constant<int, 2>) {
     switch (deck.kind) {
         case ShapeKind::disk:
             return make_round_shape<2>(deck);
+        case ShapeKind::ellipse:
+            for (const double half : deck.semi_axes) require_positive(deck, "semi_axes", half);
+            return fill<2>(deck, Ellipse(deck.semi_axes[0], deck.semi_axes[1]),
+                           Vec<2>::Constant(deck.spacing));
         case ShapeKind::rectangle: {
             require_positive(deck, "size", deck.size[0]);
             require_positive(deck, "size", deck.size[1]);
@@ -213,6 +218,8 @@ Shape<3> build(const ShapeDeck& deck, std::integral_constant<int, 3>) {
             return make_shape_from_file<3>(deck);
         case ShapeKind::disk:
             refuse_kind(deck, "disk", 3);
+        case ShapeKind::ellipse:
+            refuse_kind(deck, "ellipse", 3);
         case ShapeKind::rectangle:
             refuse_kind(deck, "rectangle", 3);
         case ShapeKind::regular_polygon:

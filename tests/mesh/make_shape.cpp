@@ -24,6 +24,7 @@ ShapeDeck deck_of(ShapeKind kind, Filling filling, double spacing) {
     deck.radius = 1.0;
     deck.sides = 6;
     deck.size = {2.0, 1.0, 0.5};
+    deck.semi_axes = {1.0, 0.5};
     deck.vertices = {{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}};
     deck.place = {"run.yaml", 12, "shapes.grit"};
     return deck;
@@ -59,6 +60,9 @@ TEST_CASE("make_shape: every plane kind and filling has its area and centre") {
     const double hexagon = 1.5 * std::sqrt(3.0);
     check_sound(make_shape<2>(deck_of(ShapeKind::disk, Filling::lattice, 0.1)), pi, 1e-12);
     check_sound(make_shape<2>(deck_of(ShapeKind::disk, Filling::rings, 0.1)), pi, 1e-12);
+    check_sound(make_shape<2>(deck_of(ShapeKind::ellipse, Filling::lattice, 0.1)), 0.5 * pi, 1e-12);
+    // Chords cut off l^2 kappa/12 of the thickness: measured 0.3 %, bound 1 %.
+    check_sound(make_shape<2>(deck_of(ShapeKind::ellipse, Filling::mesh, 0.1)), 0.5 * pi, 0.01);
     for (const Filling filling : {Filling::lattice, Filling::mesh}) {
         check_sound(make_shape<2>(deck_of(ShapeKind::rectangle, filling, 0.1)), 2.0, 1e-12);
         check_sound(make_shape<2>(deck_of(ShapeKind::regular_polygon, filling, 0.1)), hexagon, 1e-12);
