@@ -1,4 +1,4 @@
-// The command line: quern run | sweep | compare | check | schema | render | import.
+// The command line: quern run | sweep | compare | check | schema | render | import | pack.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -12,6 +12,8 @@
 #include "quern_version.hpp"
 #include "src/deck/read_deck.hpp"
 #include "src/import/import_peridem.hpp"
+#include "src/pack/pack.hpp"
+#include "src/pack/pack_spec.hpp"
 #include "src/results/render.hpp"
 #include "src/sim/run.hpp"
 #include "src/study/compare.hpp"
@@ -32,6 +34,8 @@ struct Arguments {
     ImportOptions import;
     SweepOptions sweep;
     CompareOptions compare;
+    PackOptions pack;
+    bool of_packings = false;
     bool markdown = false, profile = false;
     std::string resumed;  ///< folder of a run
 };
@@ -112,6 +116,18 @@ int import(const Arguments& arguments) {
     return 0;
 }
 
+int make_pack(const Arguments& arguments) {
+    PackOptions options = arguments.pack;
+    options.terminal = isatty(STDERR_FILENO) != 0;
+    const PackReport report = pack(options);
+    fmt::print("packed           {} grains, solid fraction {:.4f}, {:.2f} contacts a grain\n",
+               report.n_grains, report.fraction, report.coordination);
+    fmt::print("deepest overlap  {:.1e} of the size\n", report.deepest);
+    fmt::print("sizes            {:.5f} times those drawn\n", report.size_factor);
+    for (const std::string& file : report.files) fmt::print("written          {}\n", file);
+    return 0;
+}
+
 void add_import(CLI::App& app, Arguments& arguments) {
     CLI::App& command = *app.add_subcommand("import", "Make a deck from that of another program");
     command.require_subcommand(0, 1);
@@ -147,6 +163,19 @@ void add_overrides(CLI::App& command, Arguments& arguments) {
                     "Set a key of the deck, e.g. --set params.theta=45; repeatable")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
+}
+
+CLI::App& add_pack(CLI::App& app, Arguments& arguments) {
+    PackOptions& options = arguments.pack;
+    CLI::App& command = *app.add_subcommand("pack", "Make a dense packing of grains for decks; docs/pack.md");
+    command.add_option("spec", options.spec, "What to pack (YAML)")->required()->type_name("SPEC");
+    command.add_option("-o,--output", options.output, "Table of grains (.csv); .json and .png lie beside it")
+        ->required()
+        ->type_name("FILE");
+    command.add_option("--set", options.overrides, "Set a key of the file, e.g. --set seed=2; repeatable")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    return command;
 }
 
 CLI::App& add_sweep(CLI::App& app, Arguments& arguments) {
@@ -251,6 +280,7 @@ int parse_and_run(int argc, char** argv) {
 
     CLI::App& sweep_command = add_sweep(app, arguments);
     CLI::App& compare_command = add_compare(app, arguments);
+    CLI::App& pack_command = add_pack(app, arguments);
 
     CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");
     check_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
@@ -259,6 +289,7 @@ int parse_and_run(int argc, char** argv) {
     CLI::App& schema_command = *app.add_subcommand("schema", "Print the JSON Schema of decks");
     schema_command.add_flag("--markdown", arguments.markdown,
                             "The reference of all keys as Markdown instead");
+    schema_command.add_flag("--pack", arguments.of_packings, "Of packings instead of decks");
 
     CLI::App& render_command = *app.add_subcommand("render", "Draw frames of a run");
     render_command.add_option("directory", arguments.render.directory, "Folder of the results")
@@ -291,7 +322,8 @@ int parse_and_run(int argc, char** argv) {
     }
     if (app.get_subcommands().empty()) {
         return report(
-            "a command is required: run, sweep, compare, check, schema, render or import (quern --help)",
+            "a command is required: run, sweep, compare, check, schema, render, import or pack (quern "
+            "--help)",
             InputError::exit_code);
     }
     if (run_command.parsed() && arguments.deck.empty() && arguments.resumed.empty())
@@ -311,6 +343,7 @@ int parse_and_run(int argc, char** argv) {
         arguments.compare.terminal = isatty(STDERR_FILENO) != 0;
         return compare(arguments.compare);
     }
+    if (pack_command.parsed()) return make_pack(arguments);
     if (render_command.parsed()) return draw(arguments);
     if (app.got_subcommand("import")) {
         if (app.get_subcommand("import")->get_subcommands().empty())
@@ -320,6 +353,8 @@ int parse_and_run(int argc, char** argv) {
     std::string text;
     if (check_command.parsed())
         text = resolved_yaml(read_deck(arguments.deck, arguments.overrides));
+    else if (arguments.of_packings)
+        text = arguments.markdown ? pack_reference() : pack_schema();
     else
         text = arguments.markdown ? deck_reference() : deck_schema();
     const bool written = std::fputs(text.c_str(), stdout) >= 0 && std::fflush(stdout) == 0;

@@ -114,6 +114,17 @@ void Painter::add_curve(const std::vector<double>& points, double width, Rgb col
     add_solid_curve(piece);
 }
 
+void Painter::add_polygon(const std::vector<double>& points, Rgb color) {
+    context_->GetPen()->SetLineType(vtkPen::NO_PEN);
+    context_->GetBrush()->SetColor(color[0], color[1], color[2]);
+    std::vector<float> xs, ys;
+    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+        xs.push_back(to_float(points[i] * scale_));
+        ys.push_back(to_float(points[i + 1] * scale_));
+    }
+    context_->DrawPolygon(xs.data(), ys.data(), static_cast<int>(xs.size()));
+}
+
 void Painter::add_marker(double x, double y, double size, Marker shape, Rgb color) {
     context_->GetPen()->SetLineType(vtkPen::NO_PEN);
     context_->GetBrush()->SetColor(color[0], color[1], color[2]);

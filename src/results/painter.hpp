@@ -35,6 +35,8 @@ class Painter {
     void add_box(double x, double y, double width, double height, Rgb color);
     /// Through points given as x0, y0, x1, y1, ...
     void add_curve(const std::vector<double>& points, double width, Rgb color, bool dashed = false);
+    /// A filled polygon without corners inward, through points as above.
+    void add_polygon(const std::vector<double>& points, Rgb color);
     void add_marker(double x, double y, double size, Marker shape, Rgb color);
     void add_text(double x, double y, const std::string& text, const TextStyle& style);
     double text_width(const std::string& text, const TextStyle& style);
