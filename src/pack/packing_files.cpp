@@ -130,6 +130,7 @@ std::string packing_json(const PackSpec& spec, const Packing& packing, const Pac
     const auto add = [&text](const char* key, const std::string& value, bool last = false) {
         text += fmt::format("  {}: {}{}\n", json_string(key), value, last ? "" : ",");
     };
+    add("title", json_string(spec.title));
     add("spec", json_string(spec.file));
     add("seed", std::to_string(spec.seed));
     add("n_grains", std::to_string(g.n()));

@@ -223,7 +223,7 @@ const Table<PackSpec>& pack_table() {
     static const Table<PackSpec> table = [] {
         using T = PackSpec;
         Table<T> t;
-        t.text("title", &T::title, "Over the picture");
+        t.text("title", &T::title, "In the summary (.json)");
         t.add(
             {.name = "params",
              .form = Form::named,

@@ -32,6 +32,7 @@ TEST_CASE("pack: table, summary and picture") {
     CHECK(table.find("\nx,y,radius,shape,group\n") != std::string::npos);
     CHECK(std::count(table.begin(), table.end(), '\n') == report.n_grains + 2);
     CHECK(summary.find(fmt::format("\"n_grains\": {},", report.n_grains)) != std::string::npos);
+    CHECK(summary.find("\"title\": \"Disks\"") != std::string::npos);
     CHECK(summary.find("\"reached\": true") != std::string::npos);
     CHECK(summary.find("\"groups\": {\"held\": ") != std::string::npos);
     CHECK(text_of(report.files[2]).substr(1, 3) == "PNG");
