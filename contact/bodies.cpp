@@ -77,6 +77,7 @@ void ContactBodies<Dim>::make(const ContactScene<Dim>& grains) {
     grain_of_.clear();
     debris_.clear();
     cracks_.clear();
+    in_pieces_.clear();
     struct Fallen {
         int grain, first, count;
     };
@@ -108,6 +109,7 @@ void ContactBodies<Dim>::make(const ContactScene<Dim>& grains) {
                         body.mass += grains.mass[p];
                         body.volume += grains.volume[p];
                         body_of_[place] = static_cast<int>(bodies_.size());
+                        if (!debris) in_pieces_.push_back(place);
                         order_[place++] = p;
                     }
                     if (debris) {

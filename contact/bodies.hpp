@@ -55,6 +55,8 @@ class ContactBodies {
     int grain_of(int body) const { return grain_of_[body]; }
     const std::vector<LooseParticle>& debris() const { return debris_; }
     const std::vector<CrackPair>& cracks() const { return cracks_; }
+    /// Particles of the pieces that are bodies, by their places.
+    const std::vector<int>& in_pieces() const { return in_pieces_; }
 
   private:
     struct Piece {
@@ -81,6 +83,7 @@ class ContactBodies {
     std::vector<int> body_of_;   // [n]
     std::vector<LooseParticle> debris_;
     std::vector<CrackPair> cracks_;
+    std::vector<int> in_pieces_;
     std::vector<Vec<Dim>> x_, v_, v_before_, drift_;
     std::vector<double> mass_, volume_;
 };

@@ -88,6 +88,9 @@ void LooseContact<Dim>::make_rows(const ContactBodies<Dim>& bodies, const Contac
     for (const LooseParticle& loose : bodies.debris())
         for (std::size_t w = 0; w < scene.walls.size(); ++w)
             add_row(scene, trial, loose.particle, -1 - static_cast<int>(w), radius_[loose.particle]);
+    for (const int p : bodies.in_pieces())
+        for (std::size_t w = 0; w < scene.walls.size(); ++w)
+            add_row(scene, trial, p, -1 - static_cast<int>(w), 0.0);
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
     v_after_grid_.clear();

@@ -9,6 +9,9 @@
 //     wall      J' = max(0, J - m_p (n.(v_p - u) + max(g, 0)/dt)),   g = n.(x_p - x_w) - r_p
 //               J_t' = projection onto |J_t| <= mu J' of J_t - m_p (v_p - u)_t
 //
+// Pieces that are bodies meet walls by the rule of the grid, which feels nothing of a piece narrower than a
+// cell or two: of these no particle's centre passes a wall (the same law with r_p = 0).
+//
 //     J [N s; 2D: N s/m], m [kg; 2D: kg/m], g, d, r [m], u velocity of the wall [m/s]
 //
 // Pairs push apart along their line and never pull: momentum and moment of momentum are exact, energy falls,
