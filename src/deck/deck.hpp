@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,6 +69,17 @@ struct ContactPair {
     std::optional<double> contact_radius, radius_factor;
 };
 
+/// A wall that moves along its normal so as to press with a given force; src/sim/servo.hpp.
+struct ServoDeck {
+    std::optional<Expression> force;                             ///< of t [N; 2D: N/m]
+    std::optional<Expression> stress;                            ///< of t, over `area` [Pa]
+    double area = 0.0;                                           ///< [m^2; 2D: m]
+    double mass = 0.0;                                           ///< [kg; 2D: kg/m]; 0: that of all grains
+    std::optional<double> damping;                               ///< [1/s]; none: from the stiffest material
+    double max_speed = std::numeric_limits<double>::infinity();  ///< [m/s]
+    Place place;
+};
+
 /// A rigid plane. Matter stays on the side that `normal` points to.
 struct WallDeck {
     std::string name;  ///< "x-", "y+", ... for a side of the grid, or the user's name
@@ -75,6 +87,7 @@ struct WallDeck {
     Numbers3 normal{};
     double friction = 0.0;
     std::vector<Expression> velocity;  ///< of t [m/s]; empty: at rest
+    std::optional<ServoDeck> servo;    ///< takes the place of the velocity along the normal
     Place place;
 };
 

@@ -67,6 +67,15 @@ Table<GridDeck> grid_table() {
     return t;
 }
 
+/// The key of a quantity of a wall: in the plane, per metre of thickness.
+Key in_plane(Key key, const Context& now) {
+    if (now.dimension == 3) return key;
+    if (key.unit == std::string_view("N")) key.unit = "N/m";
+    if (key.unit == std::string_view("kg")) key.unit = "kg/m";
+    if (key.unit == std::string_view("m^2")) key.unit = "m";
+    return key;
+}
+
 void finish_wall(WallInput& wall, const Cursor& at, const Context& now) {
     wall.place = at.place();
     const bool by_plane = at.has("point") || at.has("normal") || at.has("name");
@@ -92,6 +101,54 @@ void finish_wall(WallInput& wall, const Cursor& at, const Context& now) {
     // Within round-off of 1 it stays, so that a resolved deck reads back to the same bits.
     if (std::abs(length - 1.0) < 1e-14) return;
     for (double& component : wall.normal) component /= length;
+}
+
+Table<ServoDeck> servo_table() {
+    using T = ServoDeck;
+    Table<T> t;
+    const auto pressure = [&t](const char* name, std::optional<Expression> T::*member, const char* unit,
+                               const char* about) {
+        const Key key{.name = name, .form = Form::formula, .unit = unit, .words = in_time, .about = about};
+        t.add(
+            key,
+            [=](T& servo, const Cursor& at, const Context& now) {
+                servo.*member = read_formula(at, now, in_plane(key, now));
+            },
+            [=](const T& servo, int) {
+                return servo.*member ? formula_text(*(servo.*member)) : std::string();
+            });
+    };
+    pressure("force", &T::force, "N", "Force on the grains (2D: N/m)");
+    pressure("stress", &T::stress, "Pa", "Or the force over area");
+    const auto number = [&t](const char* name, double T::*member, const char* unit, const char* word,
+                             const char* about) {
+        Key key{.name = name, .form = Form::number, .unit = unit, .range = positive, .about = about};
+        if (*word) key.words = {word};
+        t.add(
+            key,
+            [=](T& servo, const Cursor& at, const Context& now) {
+                servo.*member = *word && says(at, now, word) ? 0.0 : read_number(at, now, in_plane(key, now));
+            },
+            [=](const T& servo, int) {
+                if (servo.*member != 0.0) return number_text(servo.*member);
+                return std::string(word);
+            });
+    };
+    number("area", &T::area, "m^2", "", "What the stress acts on (2D: length, m)");
+    number("mass", &T::mass, "kg", "auto", "Mass of the wall (2D: kg/m); auto: that of all grains");
+    t.number("damping", &T::damping, "1/s", not_negative,
+             "Force -mass damping v on the wall; left out: critical for a block of the stiffest material");
+    t.number("max_speed", &T::max_speed, "m/s", or_infinite, "The wall goes no faster");
+    t.finish = [](T& servo, const Cursor& at, const Context&) {
+        servo.place = at.place();
+        if (servo.force.has_value() == servo.stress.has_value())
+            throw InputError(at.where(), servo.force ? "force and stress" : "neither force nor stress",
+                             "one of them");
+        if (servo.stress.has_value() != (servo.area > 0.0))
+            throw InputError(at.where(), servo.stress ? "stress without area" : "area without stress",
+                             "stress with area, or force");
+    };
+    return t;
 }
 
 Table<WallInput> wall_table() {
@@ -123,6 +180,8 @@ Table<WallInput> wall_table() {
     plane("normal", &T::normal, "", "Towards the grains; of any length");
     t.number("friction", &T::friction, "", not_negative, "Coulomb coefficient against all grains");
     t.formulas("velocity", &T::velocity, "m/s", in_time, "Velocity of the wall; left out: at rest");
+    std::optional<ServoDeck> T::*const servo = &T::servo;
+    t.section("servo", servo, servo_table(), "Moves the wall along its normal until it presses as asked");
     t.finish = finish_wall;
     return t;
 }

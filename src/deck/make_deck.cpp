@@ -170,6 +170,10 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
 
     if (deck.grains.empty()) throw InputError(at.where("grains"), "an empty list", "one grain at least");
     check_walls(deck);
+    for (const WallDeck& wall : deck.walls)
+        if (wall.servo && deck.contact.rule == ContactRule::none)
+            throw InputError(wall.servo->place.text(), "a servo without contact", "a contact.rule but none",
+                             "nothing would ever press on the wall");
     check_pairs(deck, at);
     const std::vector<std::string> shapes = names_of(deck.shapes), materials = names_of(deck.materials);
     for (std::size_t i = 0; i < deck.grains.size(); ++i) {

@@ -4,8 +4,6 @@
 namespace quern {
 namespace {
 
-constexpr Range or_infinite{0.0, no_limit, true, false, true};
-
 Table<ArrayInput> array_table() {
     using T = ArrayInput;
     Table<T> t;

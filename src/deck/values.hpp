@@ -25,6 +25,7 @@ struct Range {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 inline constexpr Range any_number{};
 inline constexpr Range positive{0.0, no_limit, true, false, false};
+inline constexpr Range or_infinite{0.0, no_limit, true, false, true};  ///< > 0, or .inf
 constexpr Range at_least(double low) {
     return {low, no_limit, false, false, false};
 }

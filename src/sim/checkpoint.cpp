@@ -72,6 +72,11 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
         checkpoint.value("wall point", wall.point);
         checkpoint.value("wall velocity", wall.velocity);
     }
+    for (std::optional<Servo>& servo : scene.servos) {
+        if (!servo) continue;
+        checkpoint.value("servo speed", servo->speed);
+        checkpoint.value("servo pressed", servo->pressed);
+    }
     checkpoint.value("travelled", scene.travelled);
     pass_fragments(checkpoint, scene.fragments);
     pass_contact(checkpoint, scene);

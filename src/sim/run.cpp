@@ -232,6 +232,8 @@ class Run {
             const FrictionTable friction = scene_->friction;
             const std::vector<Wall<Dim>> walls = scene_->walls;
             const auto wall_velocity = scene_->wall_velocity;
+            const std::vector<std::optional<Servo>> servos = scene_->servos;
+            std::fill(scene_->servos.begin(), scene_->servos.end(), std::nullopt);
             const std::vector<Constraint<Dim>> constraints = scene_->constraints;
             const std::vector<Load<Dim>> loads = scene_->loads;
             scene_->loads.insert(scene_->loads.end(), scene_->prepare_loads.begin(),
@@ -266,6 +268,7 @@ class Run {
             scene_->loads = loads;
             scene_->walls = walls;
             scene_->wall_velocity = wall_velocity;
+            scene_->servos = servos;
             scene_->constraints = constraints;
         }
         set_initial_velocities(deck_, *scene_);

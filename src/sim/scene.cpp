@@ -264,6 +264,33 @@ void add_walls(const Deck& deck, Scene<Dim>& scene) {
         for (int k = 0; k < Dim && !from.velocity.empty(); ++k) velocity[k] = from.velocity[k];
         scene.walls.push_back(wall);
         scene.wall_velocity.push_back(velocity);
+        scene.servos.emplace_back();
+    }
+}
+
+/// Servos of the walls; what the deck leaves out follows from the grains.
+template <int Dim>
+void add_servos(const Deck& deck, Scene<Dim>& scene) {
+    double mass = 0.0, sound = 0.0;
+    for (const Grain<Dim>& grain : scene.grains) {
+        if (grain.wall) continue;
+        const Material& material = deck.materials[grain.material];
+        mass += grain.mass;
+        sound = std::max(sound, std::sqrt((dilatational_modulus<Dim>(material) + material.shear_modulus) /
+                                          material.density));
+    }
+    for (std::size_t w = 0; w < deck.walls.size(); ++w) {
+        const std::optional<ServoDeck>& from = deck.walls[w].servo;
+        if (!from) continue;
+        double height = 0.0;
+        for (const Vec<Dim>& x : scene.particles.x) height = std::max(height, scene.walls[w].distance(x));
+        Servo servo;
+        servo.force = from->force ? *from->force : *from->stress;
+        servo.per = from->force ? 1.0 : from->area;
+        servo.mass = from->mass > 0.0 ? from->mass : mass;
+        servo.damping = from->damping.value_or(2.0 * sound / height);
+        servo.max_speed = from->max_speed;
+        scene.servos[w] = servo;
     }
 }
 
@@ -435,6 +462,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     check_overlap(deck, *scene);
     start_fragments(*scene, deck.contact.debris);
     scene->contact_in_pieces = deck.contact.fragments;
+    add_servos(deck, *scene);
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();
     scene->particles.v.assign(n, Vec<Dim>::Zero());

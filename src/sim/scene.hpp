@@ -14,6 +14,7 @@
 #include "particles/union_batch.hpp"
 #include "src/deck/deck.hpp"
 #include "src/sim/fragments.hpp"
+#include "src/sim/servo.hpp"
 
 namespace quern {
 
@@ -93,6 +94,7 @@ struct Scene {
 
     std::vector<Wall<Dim>> walls;
     std::vector<std::array<Expression, Dim>> wall_velocity;
+    std::vector<std::optional<Servo>> servos;  ///< [n_walls]
     FrictionTable friction;
     std::optional<ContactMethod<Dim>> contact;
     std::vector<std::uint8_t> torn;  ///< [n_grains] lost bonds in this step; empty: none can

@@ -106,14 +106,18 @@ void receive(Reaction<Dim>& reaction, const Vec<Dim>& given, const Spin<Dim>& mo
     reaction.work_now += work;
 }
 
-/// Velocities of the walls at n+1/2.
+/// Velocities of the walls at n+1/2. A servo takes the place of what the deck gives along the normal.
 template <int Dim>
-void steer_walls(Scene<Dim>& scene, const StepContext<Dim>& now) {
+void steer_walls(Scene<Dim>& scene, const StepContext<Dim>& now, double dt) {
     const double time = now.time + 0.5 * now.dt;
     for (std::size_t w = 0; w < scene.walls.size(); ++w) {
         Wall<Dim>& wall = scene.walls[w];
         scene.arrays.wall_v_before[w] = wall.velocity;
         for (int k = 0; k < Dim; ++k) wall.velocity[k] = scene.wall_velocity[w][k](time);
+        if (std::optional<Servo>& servo = scene.servos[w]) {
+            servo->steer(now.time, dt);
+            wall.velocity += (servo->speed - wall.normal.dot(wall.velocity)) * wall.normal;
+        }
         if (now.first) scene.arrays.wall_v_before[w] = wall.velocity;
     }
 }
@@ -158,7 +162,7 @@ void apply_constraints(Scene<Dim>& scene, StepContext<Dim>& now, bool after_cont
 }
 
 template <int Dim>
-void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
+void add_contact(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     if (!scene.contact) return;
     const ContactScene<Dim> view = scene.contact_scene();
     double fastest = now.largest_speed;
@@ -182,6 +186,8 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now) {
     for (std::size_t w = 0; w < report.wall_impulse.size(); ++w) {
         entry.impulse -= report.wall_impulse[w];
         entry.moment -= report.wall_moment[w];
+        if (std::optional<Servo>& servo = scene.servos[w])
+            servo->pressed = -scene.walls[w].normal.dot(report.wall_impulse[w]) / dt;
         Reaction<Dim>& reaction = now.reactions[w];
         reaction.impulse += report.wall_impulse[w];
         reaction.moment += report.wall_moment[w];
@@ -272,7 +278,7 @@ StepContext<Dim> make_context(const Scene<Dim>& scene, double dt) {
 template <int Dim>
 void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
     const double dt = now.first ? 0.5 * now.dt : now.dt;
-    steer_walls(scene, now);
+    steer_walls(scene, now, dt);
     {
         const StageTimer timer(now.stages.internal_forces);
         const std::int64_t broken = now.newly_broken;
@@ -290,7 +296,7 @@ void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
     }
     {
         const StageTimer timer(now.stages.contact);
-        add_contact(scene, now);
+        add_contact(scene, now, dt);
     }
     const StageTimer timer(now.stages.kick);
     close_ledger(scene, now, dt);

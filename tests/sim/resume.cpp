@@ -101,6 +101,14 @@ TEST_CASE("Resume: in space, through the grid, with moving walls") {
     check_killed({flip, {}, 1}, SIGKILL, {3, 20});
 }
 
+TEST_CASE("Resume: a wall that presses as hard as asked") {
+    const std::string lid =
+        replaced(unequal_deck, "{side: x+}]",
+                 "{side: x+}, {name: lid, point: [3, 5.9], normal: [0, -1], servo: {force: 9e4}}]");
+    check_killed({lid, often, 1}, SIGKILL, {0, 60});
+    check_killed({lid, often, 2}, SIGKILL, {45});
+}
+
 TEST_CASE("Resume: an interrupt leaves a checkpoint without being asked to") {
     check_killed({flip, {"output.checkpoint.every=0"}, 1}, SIGTERM, {5, 1, 1, 1});
     check_killed({unequal_deck, {}, 2}, SIGINT, {5, 20, 1, 1});
