@@ -42,30 +42,24 @@ class Report {
     }
 
     void at_most(const std::string& name, double measured, double bound) {
-        due_.push_back({name, measured, bound});
+        checks_.at_most_later(name, measured, bound);
     }
 
     int verdict() {
         table_.write(options_.directory, "inclined_plane");
         fmt::print("\n");
-        ReportChecks checks;
-        for (const Due& due : due_) checks.at_most(due.name, due.measured, due.bound);
-        return checks.verdict();
+        return checks_.verdict();
     }
 
     const std::string& directory() const { return options_.directory; }
 
   private:
-    struct Due {
-        std::string name;
-        double measured, bound;
-    };
     ReportOptions options_;
     ReportTable table_{{"mu", "degrees", "cells_per_diameter", "stiffness_factor", "loaded", "x_start_m",
                         "x_error_percent", "x_error_on_centre_height_percent", "spin_error_0.25s_percent",
                         "spin_error_0.5s_percent", "spin_error_0.75s_percent", "spin_error_1s_percent",
                         "height_range_h", "energy_residual"}};
-    std::vector<Due> due_;
+    ReportChecks checks_;
 };
 
 /// Largest errors of several runs.

@@ -92,29 +92,23 @@ class Report {
     Slide check(const Case& c, const Bounds& bounds) {
         const Slide s = run(c);
         if (c.acceleration() > 0.0)
-            due_.push_back({c.name() + ": |error of x|", std::abs(s.x_error), bounds.x_error});
+            checks_.at_most_later(c.name() + ": |error of x|", std::abs(s.x_error), bounds.x_error);
         else
-            due_.push_back({c.name() + ": |creep|", std::abs(s.creep), bounds.creep});
+            checks_.at_most_later(c.name() + ": |creep|", std::abs(s.creep), bounds.creep);
         return s;
     }
 
     int verdict() {
         table_.write(options_.directory, "sliding_block");
         fmt::print("\n");
-        ReportChecks checks;
-        for (const Due& due : due_) checks.at_most(due.name, due.measured, due.bound);
-        checks.at_most("energy residual, largest of all", worst_residual_, 1e-3);
-        return checks.verdict();
+        checks_.at_most_later("energy residual, largest of all", worst_residual_, 1e-3);
+        return checks_.verdict();
     }
 
   private:
-    struct Due {
-        std::string name;
-        double measured, bound;
-    };
     ReportOptions options_;
     ReportTable table_{{"mu", "degrees", "x_error", "creep", "hop_m", "energy_residual", "unconverged"}};
-    std::vector<Due> due_;
+    ReportChecks checks_;
     double worst_residual_ = 0;
 };
 

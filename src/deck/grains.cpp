@@ -45,16 +45,6 @@ const Column columns[] = {
     {"group", nullptr, [](GrainDeck& grain) { return &grain.group; }, 0},
 };
 
-std::vector<std::string_view> split_cells(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t end = std::min(line.size(), line.find(',', begin));
-        cells.push_back(trim(line.substr(begin, end - begin)));
-        begin = end + 1;
-    }
-    return cells;
-}
-
 /// Reads the rows of one file as grains that start from the entry's own keys.
 class GrainFile {
   public:

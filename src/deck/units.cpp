@@ -144,6 +144,16 @@ std::string_view trim(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+std::vector<std::string_view> split_cells(std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (std::size_t begin = 0; begin <= line.size();) {
+        const std::size_t end = std::min(line.size(), line.find(',', begin));
+        cells.push_back(trim(line.substr(begin, end - begin)));
+        begin = end + 1;
+    }
+    return cells;
+}
+
 std::optional<Unit> parse_unit(std::string_view text) {
     return UnitParser(text).parse();
 }

@@ -43,6 +43,8 @@ struct NumberAndRest {
 std::optional<NumberAndRest> split_number(std::string_view text);
 
 std::string_view trim(std::string_view text);
+/// The cells of a line of CSV, trimmed.
+std::vector<std::string_view> split_cells(std::string_view line);
 
 /// The SI unit of a dimension: "Pa", or in base units "kg/(m^2*s)"; "1" for pure numbers.
 std::string text_of(const Dimension& dimension);

@@ -17,16 +17,6 @@ const std::vector<std::string> size_types = {"list", "file", "uniform", "lognorm
 const std::vector<std::string> with_limits = {"uniform", "lognormal", "power_law", "weibull"};
 const std::vector<std::string> region_types = {"box", "circle"};
 
-std::vector<std::string_view> split_cells(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t begin = 0; begin <= line.size();) {
-        const std::size_t end = std::min(line.size(), line.find(',', begin));
-        cells.push_back(trim(line.substr(begin, end - begin)));
-        begin = end + 1;
-    }
-    return cells;
-}
-
 /// A column of numbers > 0; lines that begin with # are comments.
 std::vector<double> read_column(const SizeSpec& sizes, const std::string& path, const Cursor& at) {
     std::ifstream stream(path);

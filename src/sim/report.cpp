@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <utility>
 
 #include "grid/error.hpp"
 
@@ -23,7 +24,8 @@ void ReportChecks::at_least(const std::string& name, double measured, double bou
     add(name, measured, ">=", bound, measured >= bound);
 }
 
-int ReportChecks::verdict() const {
+int ReportChecks::verdict() {
+    for (const Later& check : std::exchange(later_, {})) at_most(check.name, check.measured, check.bound);
     fmt::print("{} of {} numbers within their bounds\n", n_ - n_failed_, n_);
     return n_failed_ == 0 ? 0 : 1;
 }
