@@ -1,19 +1,9 @@
-// Every kind of bad input, and the parts of the message it must give.
-#include <doctest/doctest.h>
-
-#include "grid/error.hpp"
-#include "tests/deck/deck_files.hpp"
+// Every other kind of bad input, and the parts of the message it must give.
+#include "tests/deck/bad_input.hpp"
 
 using namespace quern;
 
 namespace {
-
-struct BadInput {
-    std::string what;
-    const char* from;  ///< in plain_deck; "": `to` is added at the end
-    const char* to;
-    std::vector<std::string> parts;  ///< of the message
-};
 
 const BadInput bad_inputs[] = {
     // YAML and names
@@ -52,38 +42,6 @@ const BadInput bad_inputs[] = {
      "",
      {"deck.yaml:9: materials.glass", "no density", "a number > 0 in kg/m^3"}},
     {"nothing", "density: 2440 kg/m^3", "density:", {"deck.yaml:10: materials.glass.density", "got nothing"}},
-    // cracks, zones, strength
-    {"crack without length",
-     "",
-     "cracks: [{from: [1, 0], to: [1, 0]}]\n",
-     {"cracks.0.to", "the same point as from"}},
-    {"crack of no shape",
-     "",
-     "cracks: [{shape: dusk, from: [1, 0], to: [2, 0]}]\n",
-     {"cracks.0.shape", "unknown shape 'dusk'", "did you mean disk?"}},
-    {"crack of no grain",
-     "",
-     "cracks: [{grains: [9], from: [1, 0], to: [2, 0]}]\n",
-     {"cracks.0.grains", "grain 9", "a number from 0 to"}},
-    {"edge in the plane",
-     "",
-     "cracks: [{from: [1, 0], to: [2, 0], edge: [1, 1]}]\n",
-     {"cracks.0.edge", "does not apply in 2D"}},
-    {"crack without an end", "", "cracks: [{from: [1, 0]}]\n", {"cracks.0", "no to", "a list of 2"}},
-    {"frame", "", "cracks: [{frame: grain, from: [1, 0], to: [2, 0]}]\n", {"cracks.0.frame", "world"}},
-    {"zone without region", "", "no_fail: [{grains: [0]}]\n", {"no_fail.0", "no region"}},
-    {"strength of what never breaks",
-     "    density: 2440 kg/m^3\n",
-     "    density: 2440 kg/m^3\n    strength: {weibull_modulus: 4}\n",
-     {"materials.glass.strength", "never breaks", "critical_stretch or fracture_energy"}},
-    {"modulus below 1",
-     "    density: 2440 kg/m^3\n",
-     "    density: 2440 kg/m^3\n    critical_stretch: 0.1\n    strength: {weibull_modulus: 0.5}\n",
-     {"materials.glass.strength.weibull_modulus", "'0.5'", ">= 1"}},
-    {"strength without modulus",
-     "    density: 2440 kg/m^3\n",
-     "    density: 2440 kg/m^3\n    critical_stretch: 0.1\n    strength: {seed: 3}\n",
-     {"materials.glass.strength", "no weibull_modulus"}},
     // numbers and units
     {"text for a number",
      "2440 kg/m^3",
@@ -145,95 +103,6 @@ const BadInput bad_inputs[] = {
      "gravity: [0, -9.8]",
      "gravity: [0, -9.8 m/s]",
      {"deck.yaml:7: gravity.1", "m/s", "m/s^2"}},
-    // materials
-    {"three moduli",
-     "    density:",
-     "    poisson_ratio: 0.25\n    density:",
-     {"deck.yaml:9: materials.glass", "bulk_modulus, shear_modulus, poisson_ratio", "exactly two"}},
-    {"one modulus", "    bulk_modulus: 40 GPa\n", "", {"deck.yaml:9", "got shear_modulus", "exactly two"}},
-    {"no modulus",
-     "    bulk_modulus: 40 GPa\n    shear_modulus: 24 GPa\n",
-     "",
-     {"deck.yaml:9", "none of the moduli"}},
-    {"poisson ratio",
-     "shear_modulus: 24 GPa",
-     "poisson_ratio: 0.5",
-     {"deck.yaml:12", "poisson_ratio", "in (-1, 0.5)"}},
-    {"unsound moduli",
-     "shear_modulus: 24 GPa",
-     "young_modulus: 400 GPa",
-     {"deck.yaml:12: materials.glass.young_modulus", "G > 0"}},
-    {"unsound shear",
-     "bulk_modulus: 40 GPa",
-     "young_modulus: 80 GPa",
-     {"materials.glass.young_modulus", "K > 0"}},
-    {"bond-based poisson ratio",
-     "    density:",
-     "    model: bond_based\n    plane: stress\n    density:",
-     {"deck.yaml:10: materials.glass.model", "nu = 0.25", "nu = 1/3 in plane stress", "lps"}},
-    {"two horizons",
-     "    density:",
-     "    horizon_ratio: 3\n    horizon: 0.6 mm\n    density:",
-     {"deck.yaml:11: materials.glass.horizon", "horizon beside horizon_ratio", "only one of"}},
-    {"horizon without length", "    density:", "    horizon: 3 1/s\n    density:", {"deck.yaml:10", "in m"}},
-    {"stretch and energy",
-     "    density:",
-     "    critical_stretch: 0.1\n    fracture_energy: 50\n    density:",
-     {"deck.yaml:11: materials.glass.fracture_energy", "beside critical_stretch", "only one of"}},
-    {"no fracture energy",
-     "    density:",
-     "    fracture_energy: 0\n    density:",
-     {"deck.yaml:10: materials.glass.fracture_energy", "> 0 in J/m^2"}},
-    {"formula of nothing",
-     "    density:",
-     "    critical_stretch_formula: peridem\n    density:",
-     {"deck.yaml:10: materials.glass.critical_stretch_formula", "without fracture_energy"}},
-    {"constants of springs",
-     "    density:",
-     "    model: bond_based\n    constants: plane\n    density:",
-     {"deck.yaml:11: materials.glass.constants", "does not apply to bond_based", "lps, peridem"}},
-    {"mistyped model",
-     "    density:",
-     "    model: peridm\n    density:",
-     {"deck.yaml:10: materials.glass.model", "did you mean peridem?"}},
-    {"mistyped direction",
-     "    density:",
-     "    breaks_in: tensoin\n    density:",
-     {"deck.yaml:10: materials.glass.breaks_in", "did you mean tension?"}},
-    // shapes
-    {"missing radius", "    radius: 1 mm\n", "", {"deck.yaml:14: shapes.disk", "no radius"}},
-    {"key of another type",
-     "    radius: 1 mm",
-     "    radius: 1 mm\n    sides: 6",
-     {"deck.yaml:18: shapes.disk.sides", "does not apply to disk", "regular_polygon"}},
-    {"solid in the plane",
-     "type: disk",
-     "type: sphere",
-     {"deck.yaml:15: shapes.disk.type", "sphere", "one of disk", "2D"}},
-    {"rings in a square",
-     "type: disk\n    filling: rings\n    radius: 1 mm",
-     "type: rectangle\n    filling: rings\n    size: [1 mm, 1 mm]",
-     {"deck.yaml:16: shapes.disk.filling", "rings", "lattice or mesh"}},
-    {"two corners",
-     "type: disk\n    filling: rings\n    radius: 1 mm",
-     "type: polygon\n    vertices: [[0, 0], [1 mm, 0]]",
-     {"deck.yaml:16: shapes.disk.vertices", "2 points", "at least 3"}},
-    {"flat polygon",
-     "type: disk\n    filling: rings\n    radius: 1 mm",
-     "type: polygon\n    vertices: [[0, 0], [1 mm, 0], [2 mm, 0]]",
-     {"shapes.disk.vertices", "area 0"}},
-    {"corner in 3D",
-     "type: disk\n    filling: rings\n    radius: 1 mm",
-     "type: polygon\n    vertices: [[0, 0], [1, 0, 0], [1, 1]]",
-     {"shapes.disk.vertices.1", "a list of 3", "a list of 2"}},
-    {"coarse spacing",
-     "    spacing: 0.1 mm",
-     "    spacing: 3 mm",
-     {"deck.yaml:18: shapes.disk.spacing", "0.003", "width"}},
-    {"mesh file",
-     "type: disk\n    filling: rings\n    radius: 1 mm\n    spacing: 0.1 mm",
-     "type: mesh\n    file: none.msh",
-     {"deck.yaml:16: shapes.disk.file", "'none.msh'", "an existing file"}},
     // grid and walls
     {"periodic extent",
      "extent: [10 mm, 8 mm]\n  spacing: 0.2 mm\n  periodic: []",
@@ -481,32 +350,10 @@ const BadInput bad_inputs[] = {
      {"deck.yaml:28", "'${-mu}' = -0.3", ">= 0"}},
 };
 
-std::string message_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    try {
-        read_text(text, overrides);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "no error";
-}
-
 }  // namespace
 
 TEST_CASE("Deck: each bad input is named by line, key, what was got and what is expected") {
-    REQUIRE_NOTHROW(read_text(plain_deck));
-    for (const BadInput& bad : bad_inputs) {
-        CAPTURE(bad.what);
-        const std::string from = bad.from;
-        const std::string deck = from.empty() ? plain_deck + bad.to : replaced(plain_deck, from, bad.to);
-        const std::string message = message_of(deck);
-        CAPTURE(message);
-        if (bad.parts.empty()) CHECK(message == "no error");
-        for (const std::string& part : bad.parts) {
-            CAPTURE(part);
-            CHECK(message.find(part) != std::string::npos);
-        }
-        CHECK(message.find('\n') == std::string::npos);
-    }
+    check_messages(bad_inputs);
 }
 
 TEST_CASE("Deck: bad input in 3D is named in the same way") {
