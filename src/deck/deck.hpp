@@ -34,6 +34,10 @@ enum class Filling {
     mesh
 };  ///< rings: concentric (disk), shells (sphere); mesh: gmsh in process
 
+/// What a grain of another scale is made of: the particles of the shape moved apart, or as many as fill it at
+/// the spacing of the shape.
+enum class Scaling { stretch, refill };
+
 struct ShapeDeck {
     std::string name;
     ShapeKind kind = ShapeKind::disk;
@@ -46,6 +50,7 @@ struct ShapeDeck {
     std::string file;                             ///< mesh: path of the .msh, relative to the deck's folder
     double unit = 1.0;                            ///< mesh: metres per unit of length in the file
     double spacing = 0.0;                         ///< wanted particle spacing [m]; not read for `mesh` files
+    Scaling scaling = Scaling::stretch;
     Place place;
 };
 

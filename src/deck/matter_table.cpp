@@ -234,6 +234,9 @@ Table<ShapeDeck> shape_table() {
     t.number("spacing", &T::spacing, "m", positive, "Wanted distance between particles")
         .require()
         .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "ellipse"});
+    t.word("scaling", &T::scaling, {"stretch", "refill"},
+           "Grains of another scale: its particles further apart, or as many as it takes at this spacing")
+        .only_for({"disk", "rectangle", "regular_polygon", "polygon", "sphere", "box", "ellipse"});
     t.finish = finish_shape;
     return t;
 }

@@ -101,16 +101,55 @@ int index_of(const std::vector<Named>& list, const std::string& name) {
     return static_cast<int>(it - list.begin());
 }
 
+ShapeDeck enlarged(ShapeDeck shape, double scale) {
+    shape.radius *= scale;
+    for (double& size : shape.size) size *= scale;
+    for (double& axis : shape.semi_axes) axis *= scale;
+    for (std::array<double, 2>& corner : shape.vertices)
+        for (double& x : corner) x *= scale;
+    return shape;
+}
+
+/// The shape of a grain as a place in Scene::shapes, and the scale that is left to it.
+struct ShapeChoice {
+    int shape = 0;
+    double scale = 1.0;
+};
+
+/// Shapes of the deck in its order, then those filled anew for grains of another scale; of each grain, which.
+template <int Dim>
+std::vector<ShapeChoice> make_shapes(const Deck& deck, Scene<Dim>& scene) {
+    const auto add = [&](const ShapeDeck& shape) {
+        scene.shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
+        return static_cast<int>(scene.shapes.size()) - 1;
+    };
+    for (const ShapeDeck& shape : deck.shapes) add(shape);
+    std::map<std::pair<int, double>, int> refilled;
+    std::vector<ShapeChoice> choices;
+    for (const GrainDeck& grain : deck.grains) {
+        const int shape = index_of(deck.shapes, grain.shape);
+        const ShapeDeck& from = deck.shapes[static_cast<std::size_t>(shape)];
+        if (from.scaling == Scaling::stretch || grain.scale == 1.0) {
+            choices.push_back({shape, grain.scale});
+            continue;
+        }
+        const auto [place, is_new] = refilled.try_emplace({shape, grain.scale});
+        if (is_new) place->second = add(enlarged(from, grain.scale));
+        choices.push_back({place->second, 1.0});
+    }
+    return choices;
+}
+
 /// Grains in the order of their groups, shape and material; within a group along a curve through space, so
 /// that neighbours share caches.
 template <int Dim>
 void place_grains(const Deck& deck, Scene<Dim>& scene) {
+    const std::vector<ShapeChoice> choices = make_shapes(deck, scene);
     const int n_grains = static_cast<int>(deck.grains.size());
     std::vector<std::tuple<int, int, std::uint64_t, int>> order;
     for (int id = 0; id < n_grains; ++id) {
         const Vec<Dim> in_cells = scene.grid.in_cells(vec<Dim>(deck.grains[id].position));
-        order.emplace_back(index_of(deck.shapes, deck.grains[id].shape),
-                           index_of(deck.materials, deck.grains[id].material),
+        order.emplace_back(choices[id].shape, index_of(deck.materials, deck.grains[id].material),
                            z_order<Dim>(CartesianGrid<Dim>::cell(in_cells)), id);
     }
     std::sort(order.begin(), order.end());
@@ -139,7 +178,7 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         group.last_grain = static_cast<int>(scene.grains.size()) + 1;
         Grain<Dim> grain;
         grain.shape = &shape;
-        grain.scale = from.scale;
+        grain.scale = choices[id].scale;
         grain.first = scene.particles.size();
         grain.count = shape.n_nodes();
         grain.material = material_index;
@@ -147,16 +186,16 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         grain.wall = from.wall;
         if (material.strength)
             grain.strength = weibull_factor(material.strength->weibull_modulus, material.strength->seed, id);
-        const double volume_scale = std::pow(from.scale, Dim);
+        const double volume_scale = std::pow(grain.scale, Dim);
         const Mat<Dim> R = rotation_matrix(spin(from.angle, Spin<Dim>{}));
         for (int i = 0; i < shape.n_nodes(); ++i) {
-            const Vec<Dim> x = vec<Dim>(from.position) + from.scale * (R * shape.X[i]);
+            const Vec<Dim> x = vec<Dim>(from.position) + grain.scale * (R * shape.X[i]);
             if (!scene.grid.contains(x))
                 throw InputError(from.place.text(),
                                  fmt::format("grain {} with a particle outside the grid", id),
                                  "every grain inside the grid", "move the grain or enlarge grid.extent");
             for (std::size_t w = 0; w < scene.walls.size(); ++w)
-                if (scene.walls[w].distance(x) < -0.5 * shape.dx * from.scale)
+                if (scene.walls[w].distance(x) < -0.5 * shape.dx * grain.scale)
                     throw InputError(from.place.text(),
                                      fmt::format("grain {} reaching {:.3g} m behind wall '{}'", id,
                                                  -scene.walls[w].distance(x), deck.walls[w].name),
@@ -451,8 +490,6 @@ double Scene<Dim>::stable_step() const {
 template <int Dim>
 std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     auto scene = std::make_unique<Scene<Dim>>(make_grid<Dim>(deck.grid));
-    for (const ShapeDeck& shape : deck.shapes)
-        scene->shapes.push_back(std::make_unique<Shape<Dim>>(make_shape<Dim>(shape)));
     add_walls(deck, *scene);
     place_grains(deck, *scene);
     mark_cracked(deck, *scene);
