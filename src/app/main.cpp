@@ -94,8 +94,10 @@ int run(const Arguments& arguments) {
     fmt::print("wall time        {:.3f} s, {:.1f} ns per particle and step, {} threads\n",
                summary.wall_seconds, summary.ns_per_particle_step, summary.threads);
     fmt::print("energy residual  {:.2e} of the energy that changed hands\n", summary.residual_relative);
-    fmt::print("momentum error   {:.2e} linear, {:.2e} angular\n", summary.momentum_error_linear,
-               summary.momentum_error_angular);
+    fmt::print("momentum error   {:.2e} linear", summary.momentum_error_linear);
+    if (!std::isnan(summary.momentum_error_angular))
+        fmt::print(", {:.2e} angular", summary.momentum_error_angular);
+    fmt::print("\n");
     for (const auto& [text, count] : summary.warnings)
         fmt::print("warning          {} ({} times)\n", text, count);
     if (arguments.profile) print_profile(summary);

@@ -94,9 +94,9 @@ struct Summary {
     std::vector<ReactionRow> reactions;  ///< at the end
     std::vector<FragmentRow> fragments;  ///< at the last frame
     EnergyBudget energy;
-    double residual_relative = 0;      ///< |residual| / throughput, largest over the run
-    double momentum_error_linear = 0;  ///< |p - p0 - impulses| / momentum scale, largest over the run
-    double momentum_error_angular = 0;
+    double residual_relative = 0;       ///< |residual| / throughput, largest over the run
+    double momentum_error_linear = 0;   ///< |p - p0 - impulses| / momentum scale, largest over the run
+    double momentum_error_angular = 0;  ///< no number on periodic axes, which are no frame that may turn
     std::vector<std::pair<std::string, std::int64_t>> warnings;  ///< text (with the first step), count
 };
 

@@ -325,7 +325,10 @@ class Run {
         summary_.energy = row.energy;
         summary_.residual_relative = observer_.residual_relative();
         summary_.momentum_error_linear = observer_.momentum_error_linear();
-        summary_.momentum_error_angular = observer_.momentum_error_angular();
+        const std::array<bool, 3>& periodic = deck_.grid.periodic;
+        const bool turns = std::find(periodic.begin(), periodic.end(), true) == periodic.end();
+        summary_.momentum_error_angular =
+            turns ? observer_.momentum_error_angular() : std::numeric_limits<double>::quiet_NaN();
         if (row.energy.residual > 0.2 * row.energy.throughput && row.energy.residual > round_off_energy())
             throw SimulationError(unstable_message(row.energy));
     }

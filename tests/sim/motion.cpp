@@ -1,5 +1,9 @@
 // Motions known in closed form, prescribed ones, and the prepare phase.
 #include "src/sim/step.hpp"
+
+#include <cmath>
+
+#include "src/results/json.hpp"
 #include "tests/sim/decks.hpp"
 
 namespace quern::test {
@@ -141,7 +145,10 @@ grains:
         worst = std::max(worst, std::abs(middle.grains[i].position[0] - seam.grains[i].position[0] - shift));
         worst = std::max(worst, std::abs(middle.grains[i].position[1] - seam.grains[i].position[1]));
     }
-    CHECK(worst < 1e-12);  // measured 6.7e-15, bound 1e-12 [m]
+    CHECK(worst < 1e-12);                               // measured 6.7e-15, bound 1e-12 [m]
+    CHECK(seam.summary.momentum_error_linear < 1e-12);  // measured 4.9e-16, bound 1e-12
+    CHECK(std::isnan(seam.summary.momentum_error_angular));
+    CHECK(contains(make_summary_json(seam.summary), "\"angular\": null"));
 }
 
 }  // namespace quern::test
