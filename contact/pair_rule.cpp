@@ -107,11 +107,22 @@ void PairRule<Dim>::add_row(const ContactNodes<Dim>& nodes, const ContactScene<D
     rows_[page].push_back(row);
 }
 
+/// Two patches that cannot turn, single particles as a rule: only an impulse along the line of their centres
+/// keeps the angular momentum. `apart`: from the centre of A to that of B [m].
+template <int Dim>
+void meet_as_points(const Vec<Dim>& apart, PairRow<Dim>& row) {
+    const double distance = apart.norm();
+    if (distance == 0.0) return;
+    row.n = apart / (row.n.dot(apart) < 0.0 ? -distance : distance);
+    row.mu = 0.0;
+}
+
 template <int Dim>
 void PairRule<Dim>::use_slots(const ContactNodes<Dim>& nodes, PairRow<Dim>& row) const {
     const Slot<Dim>& A = nodes.slots()[row.a];
     const Slot<Dim>* B = row.b >= 0 ? &nodes.slots()[row.b] : nullptr;
     // A patch that cannot turn takes its impulse at its centre; there both grains must meet.
+    if (options_.rotation && B && !A.rotates && !B->rotates) meet_as_points<Dim>(Vec<Dim>(B->xb - A.xb), row);
     if (!A.rotates)
         row.point = A.xb;
     else if (B && !B->rotates)
@@ -145,6 +156,7 @@ void PairRule<Dim>::use_patches(const ContactNodes<Dim>& nodes, const ContactSce
     if (options_.rotation && !turns(row.patch_a)) {
         to_centre(row.patch_a);
         if (row.b >= 0) row.patch_b = add(row.b, contact.b, half_gap);
+        if (!turns(row.patch_b)) meet_as_points<Dim>(Vec<Dim>(-patches.patches[row.patch_b].r), row);
     } else if (options_.rotation && !turns(row.patch_b)) {
         to_centre(row.patch_b);
         row.patch_a = add(row.a, contact.a, -half_gap);

@@ -20,6 +20,9 @@
 // for two grains, one common normal and lumped mass the two agree. Here grains meet in pairs, the inverse
 // mass is exact, and approach across a gap g is free up to g/dt.
 //
+// Where a patch cannot turn (one particle, B_p J = J/m), x_c is its centre; where neither can, n is the line
+// of their centres and there is no friction: no other impulse keeps the angular momentum of two points.
+//
 // In the flip coupling the same rows act on nodal velocities: W = 1/m_A + 1/m_B, no lever.
 #pragma once
 
