@@ -72,7 +72,8 @@ struct ContactTrial {
     std::span<Vec<Dim>> drift;  ///< [n] velocity that positions move with; read only if `moves_with_grid`
     /// No particle and no wall is faster, with this step's forces [m/s]. Infinite: not known.
     double largest_speed = std::numeric_limits<double>::infinity();
-    bool first = false;  ///< first kick of the clock: half as long, and nothing has moved before it
+    bool first = false;    ///< first kick of the clock: half as long, and nothing has moved before it
+    bool listing = false;  ///< list_contacts will be called after this step
 };
 
 /// Energies are work done on the particles in this step, impulse times the mean of the velocities before

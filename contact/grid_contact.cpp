@@ -71,6 +71,24 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
     return report_;
 }
 
+template <int Dim>
+void GridContact<Dim>::list_contacts(const ContactScene<Dim>& scene, std::vector<ContactPoint<Dim>>& points) {
+    const ContactScene<Dim> seen = bodies_.whole() ? scene : bodies_.gather(scene);
+    std::vector<ContactPoint<Dim>> listed;
+    if (options_.rule != GridRule::seed)
+        pair_.list_contacts(nodes_, listed);
+    else
+        list_seed_contacts<Dim>(nodes_, seen, nodal_trial_, listed);
+    if (!bodies_.whole()) loose_.list_contacts(bodies_, seen, listed);
+    for (ContactPoint<Dim>& point : listed) {
+        if (!bodies_.whole()) {
+            point.first = bodies_.grain_of(point.first);
+            if (point.second >= 0) point.second = bodies_.grain_of(point.second);
+        }
+        if (point.first != point.second) points.push_back(point);
+    }
+}
+
 /// The rule of the grid: `scene` holds grains, or the bodies of broken ones.
 template <int Dim>
 void GridContact<Dim>::apply_rule(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial) {

@@ -28,6 +28,10 @@ class GridContact {
     /// Changes trial.v (and sets trial.drift in the flip coupling). Positions must be inside the grid.
     const ContactReport<Dim>& add_impulses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
 
+    /// Appends the contacts of the last step, which `scene` was given to; impulses last ContactTrial::dt, or
+    /// half of it in the first kick.
+    void list_contacts(const ContactScene<Dim>& scene, std::vector<ContactPoint<Dim>>& points);
+
     /// What has become of a grain that has lost bonds: piece [n] as of particles/pieces.hpp, and all its
     /// broken bonds.
     void set_pieces(const ContactScene<Dim>& scene, int grain, std::span<const int> piece,

@@ -188,6 +188,35 @@ void LooseContact<Dim>::add_impulses(const ContactBodies<Dim>& bodies, const Con
     book(bodies, scene, trial, v_trial, report);
 }
 
+template <int Dim>
+void LooseContact<Dim>::list_contacts(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                                      std::vector<ContactPoint<Dim>>& points) const {
+    for (const Row& row : rows_) {
+        if (row.J == 0.0) continue;
+        ContactPoint<Dim> point;
+        point.first = bodies.body_of(row.p);
+        const Vec<Dim>& x = scene.x[row.p];
+        if (row.q >= 0) {
+            const Vec<Dim> d = nearest_(x, scene.x[row.q]);
+            const double part = radius_[row.p] / (radius_[row.p] + radius_[row.q]);
+            point.second = bodies.body_of(row.q);
+            point.at_first = x + part * d;
+            point.at_second = scene.x[row.q] - (1.0 - part) * d;
+            point.normal = row.n;
+            point.impulse = row.J * row.n;
+            point.slips = true;
+        } else {
+            const Wall<Dim>& wall = scene.walls[-1 - row.q];
+            point.second = row.q;
+            point.at_first = point.at_second = x - wall.distance(x) * row.n;
+            point.normal = -row.n;
+            point.impulse = -(row.J * row.n + row.J_t);
+            point.slips = at_friction_limit<Dim>(point.impulse, point.normal, wall.friction);
+        }
+        points.push_back(point);
+    }
+}
+
 template class LooseContact<2>;
 template class LooseContact<3>;
 

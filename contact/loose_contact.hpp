@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "contact/bodies.hpp"
+#include "contact/contact_list.hpp"
 #include "contact/point_cells.hpp"
 
 namespace quern {
@@ -43,6 +44,10 @@ class LooseContact {
     void add_impulses(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
                       const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
                       ContactReport<Dim>& report);
+    /// Appends the pairs of the last step that press; of bodies and pieces of debris, as ContactBodies counts
+    /// them.
+    void list_contacts(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                       std::vector<ContactPoint<Dim>>& points) const;
 
   private:
     /// Two particles, or one and a wall (q = -1 - wall).

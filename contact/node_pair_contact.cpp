@@ -76,6 +76,12 @@ const ContactReport<Dim>& NodePairContact<Dim>::add_impulses(const ContactScene<
             std::any_of(scene.walls.begin(), scene.walls.end(),
                         [](const Wall<Dim>& wall) { return wall.friction > 0.0; });
     if (has_levers()) find_touching(scene, trial);
+    listing_ = trial.listing;
+    if (listing_) {
+        const int last = list_.n_rows() - 1;
+        received_.assign(static_cast<std::size_t>(last < 0 ? 0 : list_.entries_of(last).second),
+                         Vec<Dim>::Zero());
+    }
     sums_ = parallel::sum(list_.listed().size(), Sums{},
                           [&](std::size_t i) { return push_row(scene, trial, list_.listed()[i]); });
     apply(scene, trial);
@@ -144,7 +150,11 @@ typename NodePairContact<Dim>::Sums NodePairContact<Dim>::push_row(const Contact
             if (a.d != b.d) return a.d < b.d;
             return std::lexicographical_compare(a.r.data(), a.r.data() + Dim, b.r.data(), b.r.data() + Dim);
         });
-    for (const Touch& touch : touching) push_from_node(scene, trial, row, touch, sums, squared, damped);
+    for (const Touch& touch : touching) {
+        if (listing_) received_[touch.entry] = -push_[row].J;
+        push_from_node(scene, trial, row, touch, sums, squared, damped);
+        if (listing_) received_[touch.entry] += push_[row].J;
+    }
     if (report_.searched && active_[row])
         sums.stable_step = law_.step_with(list_.grain(row), squared, damped);
     return sums;
@@ -349,6 +359,45 @@ void NodePairContact<Dim>::book_losses(const ContactScene<Dim>& scene, const Con
     report_.friction_work = losses.friction - sums_.wall_friction;
     report_.wall_work = sums_.wall_work;
     if (centres_) centres_->book_losses(scene, trial, report_);
+}
+
+template <int Dim>
+void NodePairContact<Dim>::list_contacts(const ContactScene<Dim>& scene,
+                                         std::vector<ContactPoint<Dim>>& points) const {
+    for (const int row : list_.listed()) {
+        if (!active_[row]) continue;
+        const auto [first, last] = list_.entries_of(row);
+        const int p = list_.particle(row), g = list_.grain(row),
+                  n_walls = wall_first_[row + 1] - wall_first_[row];
+        for (int e = first; e < last; ++e) {
+            ContactPoint<Dim> point;
+            point.first = g;
+            double mu = 0.0;
+            if (e < first + n_walls) {
+                const WallPush& push = wall_push_[static_cast<std::size_t>(wall_first_[row] + e - first)];
+                const Wall<Dim>& wall = scene.walls[push.wall];
+                if (push.J.isZero(0.0)) continue;
+                point.second = -1 - push.wall;
+                point.at_first = point.at_second = scene.x[p] - wall.distance(scene.x[p]) * wall.normal;
+                point.normal = -wall.normal;
+                point.impulse = push.J;
+                mu = wall.friction;
+            } else {
+                const int q = list_.partner(e), h = list_.grain(list_.row_of(q));
+                if (q < p || g == h || received_[e].isZero(0.0)) continue;
+                const Vec<Dim> r = list_.nearest()(scene.x[p], scene.x[q]);
+                const double part = law_.node_radius(p) / (law_.node_radius(p) + law_.node_radius(q));
+                point.second = h;
+                point.at_first = scene.x[p] + part * r;
+                point.at_second = scene.x[q] - (1.0 - part) * r;
+                point.normal = r.normalized();
+                point.impulse = -received_[e];
+                mu = (*scene.friction)(scene.grains[g].material, scene.grains[h].material);
+            }
+            point.slips = at_friction_limit<Dim>(point.impulse, point.normal, mu);
+            points.push_back(point);
+        }
+    }
 }
 
 template <int Dim>

@@ -35,6 +35,7 @@
 #include <optional>
 
 #include "contact/centre_dashpots.hpp"
+#include "contact/contact_list.hpp"
 #include "contact/node_pair_list.hpp"
 #include "contact/node_patch.hpp"
 
@@ -51,6 +52,9 @@ class NodePairContact {
 
     /// Changes trial.v. The report's stable_step is that of the springs found, after a search; else infinite.
     const ContactReport<Dim>& add_impulses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
+
+    /// Appends the contacts of the last step, whose trial asked for it (ContactTrial::listing).
+    void list_contacts(const ContactScene<Dim>& scene, std::vector<ContactPoint<Dim>>& points) const;
 
     /// Books the works of the last impulses anew, where velocities have been changed once more since.
     void book_losses(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial);
@@ -126,6 +130,7 @@ class NodePairContact {
     std::vector<NodePatches<Dim>> patches_;       // of each shape
     std::vector<int> patch_of_grain_;             // [n_grains] into patches_
     std::vector<Vec<Dim>> wall_velocity_before_;  // [n_walls]
+    bool listing_ = false;                        // impulses of single contacts are kept
     bool rubs_ = false;                           // there is friction, or what is left of it
     std::int64_t n_slipped_ = 0;
 
@@ -136,6 +141,7 @@ class NodePairContact {
     std::vector<PatchMotion<Dim>> motion_;
     std::vector<int> wall_first_;      // [n_rows + 1] into wall_push_
     std::vector<WallPush> wall_push_;  // row after row
+    std::vector<Vec<Dim>> received_;   // while listing: [n_entries] impulse from each node [N s]
     Sums sums_;
     ContactReport<Dim> report_;
 };

@@ -419,6 +419,26 @@ void PairRule<Dim>::solve_nodal(const ContactNodes<Dim>& nodes, const ContactSce
              report);
 }
 
+template <int Dim>
+void PairRule<Dim>::list_contacts(const ContactNodes<Dim>& nodes,
+                                  std::vector<ContactPoint<Dim>>& points) const {
+    for (std::size_t page = 0; page < page_reports_.size(); ++page)
+        for (const PairRow<Dim>& row : rows_[page]) {
+            if (row.J_n == 0.0) continue;
+            const Slot<Dim>& A = nodes.slots()[row.a];
+            ContactPoint<Dim> point;
+            point.first = A.grain;
+            point.second = row.b >= 0 ? nodes.slots()[row.b].grain : -1 - row.wall;
+            point.at_first = point.at_second = nodes.grid().node_position(A.index) + row.point;
+            if (row.b >= 0)
+                point.at_second = nodes.grid().node_position(nodes.slots()[row.b].index) + row.point;
+            point.normal = row.n;
+            point.impulse = row.J_n * row.n + row.J_t;
+            point.slips = at_friction_limit<Dim>(point.impulse, row.n, row.mu);
+            points.push_back(point);
+        }
+}
+
 template class PairRule<2>;
 template class PairRule<3>;
 

@@ -30,6 +30,7 @@
 #include <memory>
 #include <vector>
 
+#include "contact/contact_list.hpp"
 #include "contact/contact_nodes.hpp"
 #include "contact/patch.hpp"
 #include "contact/surface_rule.hpp"
@@ -69,6 +70,8 @@ class PairRule {
     void solve_nodal(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                      std::vector<Vec<Dim>>& nodal, const std::vector<Vec<Dim>>& nodal_before,
                      ContactReport<Dim>& report);
+    /// Appends the rows of the last step that press.
+    void list_contacts(const ContactNodes<Dim>& nodes, std::vector<ContactPoint<Dim>>& points) const;
 
   private:
     struct PageReport {                    ///< of the rows of one page

@@ -12,6 +12,7 @@
 
 #include <vector>
 
+#include "contact/contact_list.hpp"
 #include "contact/contact_nodes.hpp"
 
 namespace quern {
@@ -22,5 +23,10 @@ template <int Dim>
 void apply_seed_rule(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
                      std::vector<Vec<Dim>>& nodal, const std::vector<Vec<Dim>>& nodal_before,
                      ContactReport<Dim>& report);
+
+/// Appends the contacts that the rule finds with these velocities, as contact_list.hpp says.
+template <int Dim>
+void list_seed_contacts(const ContactNodes<Dim>& nodes, const ContactScene<Dim>& scene,
+                        const std::vector<Vec<Dim>>& nodal_trial, std::vector<ContactPoint<Dim>>& points);
 
 }  // namespace quern
