@@ -76,6 +76,8 @@ TEST_CASE("Architecture: a lower room includes nothing of a higher one") {
     CHECK(upward("src/mesh", {"src/sim", "src/results", "contact/"}) == "");
     CHECK(upward("src/import", {"src/sim", "contact/", "particles/"}) == "");
     CHECK(upward("src/results", {"src/sim", "src/mesh", "contact/", "particles/"}) == "");
+    // Statistics of contacts know neither decks nor files.
+    CHECK(upward("src/observe", {"src/sim", "src/deck", "src/mesh", "src/results", "src/study"}) == "");
     // Packings are tables of grains: decks and pictures are all they need.
     CHECK(upward("src/pack", {"src/sim", "src/mesh", "src/study", "contact/"}) == "");
     // Studies run the program, and know it by its files.
