@@ -242,6 +242,31 @@ struct OutputDeck {
     Place place;
 };
 
+enum class Axis { x, y, z };
+
+/// Where observers take means: a box, or all between the walls, and there where a formula is not 0.
+struct ObserveRegion {
+    std::string name;
+    std::optional<Numbers3> from, to;  ///< lower, upper corner [m]; none: the box between the walls
+    std::optional<Expression> where;   ///< of x, y, z, t; non-zero: inside
+};
+
+/// Means over slices of the box between the walls.
+struct ObserveProfile {
+    std::string name;
+    Axis axis = Axis::y;
+    int bins = 20;
+    std::optional<double> from, to;  ///< [m]; none: the box between the walls
+};
+
+/// Contacts, stress and their means with every frame; docs/observers.md.
+struct ObserveDeck {
+    bool on = false;
+    std::vector<ObserveRegion> regions;  ///< beside all
+    std::vector<ObserveProfile> profiles;
+    double force_bin = 0.25;  ///< width of the bins of P(f), over the mean force
+};
+
 struct Deck {
     std::string title;
     std::string file;  ///< path as given
@@ -262,6 +287,7 @@ struct Deck {
     TimeDeck time;
     ComputeDeck compute;
     OutputDeck output;
+    ObserveDeck observe;
 };
 
 }  // namespace quern

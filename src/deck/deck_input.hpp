@@ -64,6 +64,7 @@ struct DeckInput {
     std::vector<NoFailDeck> no_fail;
     PrepareInput prepare;
     OutputDeck output;
+    ObserveDeck observe;
 };
 
 inline const std::vector<std::string> wall_sides = {"x-", "x+", "y-", "y+", "z-", "z+"};
@@ -77,6 +78,7 @@ Table<ShapeDeck> shape_table();
 Table<GrainInput> grain_table();
 Table<CrackDeck> crack_table();
 Table<NoFailDeck> no_fail_table();
+Table<ObserveDeck> observe_table();
 
 // Checks of single sections, run as soon as each is read.
 void finish_material(MaterialInput& material, const Cursor& at, const Context& now);

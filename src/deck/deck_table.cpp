@@ -483,6 +483,14 @@ Table<DeckInput> make_deck_table() {
     t.section("prepare", &T::prepare, prepare_table(), "Relaxation before the run");
     t.section("compute", &T::compute, compute_table(), "How forces inside the grains are evaluated");
     t.section("output", &T::output, output_table(), "What is written, and how often");
+    t.section(
+        "observe", &T::observe, observe_table(),
+        "Contacts, stress and their means with every frame (docs/observers.md); {}: without regions and "
+        "profiles of your own");
+    const auto write_observe = t.fields.back().write;
+    t.fields.back().write = [write_observe](const T& input, int dimension) {
+        return input.observe.on ? write_observe(input, dimension) : std::string();
+    };
     t.list("grains", &T::grains, grain_table(), "Grains, numbered from 0 in this order").require();
     return t;
 }

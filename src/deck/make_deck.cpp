@@ -166,6 +166,7 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     deck.time = input.time;
     deck.compute = input.compute;
     deck.output = std::move(input.output);
+    deck.observe = std::move(input.observe);
     deck.grains = expand_grains(input.grains, deck.shapes, now);
 
     if (deck.grains.empty()) throw InputError(at.where("grains"), "an empty list", "one grain at least");

@@ -56,6 +56,7 @@ DeckInput make_input(const Deck& deck) {
     for (const LoadDeck& load : deck.prepare.loads) input.prepare.load_entries.push_back(load_input(load));
     input.compute = deck.compute;
     input.output = deck.output;
+    input.observe = deck.observe;
     return input;
 }
 

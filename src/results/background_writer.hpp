@@ -18,6 +18,7 @@ struct Packet {
     std::vector<GrainRow> grains;
     std::vector<ReactionRow> reactions;
     std::vector<FragmentRow> fragments;
+    std::vector<TableRows> tables;  ///< of the frame, one a layout
     Frame frame;
     bool has_frame = false;
 };

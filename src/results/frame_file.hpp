@@ -3,6 +3,9 @@
 //   /time [F]  /step [F]  /position [F, n, d]  /velocity [F, n, d]  /damage [F, n]  /stress [F, n, 4 | 6]
 //   /grain [n]  /volume [n]  and, where grains can break, /damage_z [F, n] and /fragment [F, n]
 //
+//   /observed/NAME [R, C]  /observed/NAME_end [F]   tables: rows of frame k are those from NAME_end[k - 1] up
+//                                                   to NAME_end[k]; attribute `columns`: their names
+//
 // F frames, n particles, d = 2 or 3. One chunk holds one frame of at most 4194304 particles. /damage,
 // /damage_z, /fragment, /grain and /volume are shuffled and deflated. /position, /velocity and /stress are
 // left plain: their last digits are noise, of which deflate takes off a quarter or less at a twentieth of the
@@ -23,15 +26,16 @@ class FrameFileWriter {
   public:
     /// domain: lower then upper corner [m], 2 * dimension numbers, or empty where there is none.
     FrameFileWriter(const std::string& path, int dimension, const std::string& title,
-                    const std::vector<double>& domain);
+                    const std::vector<double>& domain, const std::vector<TableLayout>& tables = {});
     /// Goes on behind the first n_frames of a file; what follows them is cut off. Throws InputError if the
     /// file cannot be read or has fewer.
-    FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames);
+    FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames,
+                    const std::vector<TableLayout>& tables = {});
     ~FrameFileWriter();
 
     /// Appends and flushes. Frames must agree in dimension and number of particles; grain and volume are
-    /// those of the first. Throws OutputError with the system's reason.
-    void add(const Frame& frame);
+    /// those of the first. `tables`: rows of each layout. Throws OutputError with the system's reason.
+    void add(const Frame& frame, const std::vector<TableRows>& tables = {});
     void close();
     std::int64_t n_frames() const;
 

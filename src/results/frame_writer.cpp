@@ -16,6 +16,7 @@ namespace {
 
 constexpr hsize_t particles_per_chunk = 1 << 22;
 constexpr hsize_t times_per_chunk = 256;
+constexpr hsize_t rows_per_chunk = 256;
 constexpr unsigned deflate_level = 1;  // higher levels cost several times the time for a few percent
 
 // A kill can cut a write between two pages. An index cut in two would lose frames that were complete before,
@@ -33,13 +34,22 @@ const char* stress_components(int dimension) {
 }  // namespace
 
 struct FrameFileWriter::Impl {
-    Impl(const std::string& path, int dimension) : path(path), dimension(dimension) {}
+    Impl(const std::string& path, int dimension, const std::vector<TableLayout>& layouts)
+        : path(path), dimension(dimension) {
+        for (const TableLayout& layout : layouts) tables.push_back({layout, {}, {}});
+    }
 
     std::string path;
     int dimension;
     Hdf5Handle file;
     Hdf5Handle time, step, position, velocity, damage, damage_z, fragment, stress;
     hsize_t n_frames = 0, n_particles = 0;
+    struct Table {
+        TableLayout layout;
+        Hdf5Handle rows, end;
+        hsize_t n_rows = 0;
+    };
+    std::vector<Table> tables;
 
     [[noreturn]] void fail(const std::string& deed) const {
         throw OutputError(fmt::format("{}: cannot {}: {}", path, deed, hdf5_reason()));
@@ -137,6 +147,70 @@ struct FrameFileWriter::Impl {
               "write");
     }
 
+    static std::string rows_name(const Table& table) { return "observed/" + table.layout.name; }
+    static std::string end_name(const Table& table) { return rows_name(table) + "_end"; }
+
+    /// Empty, with the names of their columns.
+    void make_tables() {
+        if (tables.empty()) return;
+        const Hdf5Handle group = checked(H5Gcreate2(file, "observed", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                         H5Gclose, "add a group");
+        for (Table& table : tables) {
+            const hsize_t shape[] = {0, table.layout.columns.size()}, limit[] = {H5S_UNLIMITED, shape[1]},
+                          chunk[] = {rows_per_chunk, shape[1]};
+            const Hdf5Handle properties = checked(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "make properties");
+            check(H5Pset_chunk(properties, 2, chunk), "set the chunks");
+            const Hdf5Handle space = checked(H5Screate_simple(2, shape, limit), H5Sclose, "make a space");
+            table.rows = checked(H5Dcreate2(file, rows_name(table).c_str(), H5T_IEEE_F64LE, space,
+                                            H5P_DEFAULT, properties, H5P_DEFAULT),
+                                 H5Dclose, "add a dataset");
+            std::string names, units;
+            for (const TableColumn& column : table.layout.columns) {
+                names += (names.empty() ? "" : ",") + column.name;
+                units += (units.empty() ? "" : ",") + column.unit;
+                if (column.words.empty()) continue;
+                std::string words;
+                for (const std::string& word : column.words) words += (words.empty() ? "" : "\n") + word;
+                add_attribute(table.rows, ("words of " + column.name).c_str(), words);
+            }
+            add_attribute(table.rows, "columns", names);
+            add_attribute(table.rows, "units", units);
+            table.end = add_dataset(end_name(table).c_str(), H5T_STD_I64LE, {0}, Packing::plain, "1",
+                                    "number of rows at the end of each frame");
+        }
+    }
+
+    void append_rows(Table& table, const TableRows& cells) const {
+        const hsize_t n_columns = table.layout.columns.size(), n = cells.size() / n_columns;
+        if (n > 0) {
+            const hsize_t shape[] = {table.n_rows + n, n_columns}, start[] = {table.n_rows, 0},
+                          count[] = {n, n_columns};
+            check(H5Dset_extent(table.rows, shape), "extend a dataset");
+            const Hdf5Handle space = checked(H5Dget_space(table.rows), H5Sclose, "read a space");
+            check(H5Sselect_hyperslab(space, H5S_SELECT_SET, start, nullptr, count, nullptr), "select rows");
+            const Hdf5Handle memory = checked(H5Screate_simple(2, count, nullptr), H5Sclose, "make a space");
+            check(H5Dwrite(table.rows, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, cells.data()), "write");
+        }
+        table.n_rows += n;
+        append(table.end, H5T_NATIVE_HSIZE, &table.n_rows);
+    }
+
+    /// Cuts the tables to the rows of the frames that count.
+    void open_tables() {
+        for (Table& table : tables) {
+            table.rows =
+                checked(H5Dopen2(file, rows_name(table).c_str(), H5P_DEFAULT), H5Dclose, "open a dataset");
+            table.end =
+                checked(H5Dopen2(file, end_name(table).c_str(), H5P_DEFAULT), H5Dclose, "open a dataset");
+            check(H5Dset_extent(table.end, &n_frames), "shorten a dataset");
+            std::vector<hsize_t> ends(n_frames);
+            check(H5Dread(table.end, H5T_NATIVE_HSIZE, H5S_ALL, H5S_ALL, H5P_DEFAULT, ends.data()), "read");
+            table.n_rows = ends.back();
+            const hsize_t shape[] = {table.n_rows, table.layout.columns.size()};
+            check(H5Dset_extent(table.rows, shape), "shorten a dataset");
+        }
+    }
+
     Hdf5Handle access() const {
         Hdf5Handle properties = checked(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "make properties");
         // Without locks a picture can be drawn from a run that is still going on.
@@ -164,6 +238,7 @@ struct FrameFileWriter::Impl {
             shape[0] = n_frames;
             check(H5Dset_extent(*dataset, shape.data()), "shorten a dataset");
         }
+        open_tables();
         check(H5Fflush(file, H5F_SCOPE_LOCAL), "write");
     }
 
@@ -208,8 +283,8 @@ struct FrameFileWriter::Impl {
 };
 
 FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const std::string& title,
-                                 const std::vector<double>& domain)
-    : impl_(new Impl(path, dimension)) {
+                                 const std::vector<double>& domain, const std::vector<TableLayout>& tables)
+    : impl_(new Impl(path, dimension, tables)) {
     silence_hdf5();
     const Hdf5Handle access = impl_->access();
     const Hdf5Handle creation = impl_->checked(H5Pcreate(H5P_FILE_CREATE), H5Pclose, "make properties");
@@ -223,8 +298,9 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const s
     impl_->check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), "write");
 }
 
-FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames)
-    : impl_(new Impl(path, dimension)) {
+FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames,
+                                 const std::vector<TableLayout>& tables)
+    : impl_(new Impl(path, dimension, tables)) {
     if (n_frames > 0) {
         const FrameFileReader reader(path);
         if (reader.dimension() != dimension || static_cast<std::int64_t>(reader.n_frames()) < n_frames)
@@ -242,7 +318,7 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::in
         return;
     }
     for (const char* name : {"time", "step", "position", "velocity", "damage", "damage_z", "fragment",
-                             "stress", "grain", "volume"})
+                             "stress", "grain", "volume", "observed"})
         if (H5Lexists(impl_->file, name, H5P_DEFAULT) > 0)
             impl_->check(H5Ldelete(impl_->file, name, H5P_DEFAULT), "remove an old dataset");
 }
@@ -253,11 +329,14 @@ std::int64_t FrameFileWriter::n_frames() const {
     return static_cast<std::int64_t>(impl_->n_frames);
 }
 
-void FrameFileWriter::add(const Frame& frame) {
+void FrameFileWriter::add(const Frame& frame, const std::vector<TableRows>& tables) {
     impl_->require_consistent(frame);
     silence_hdf5();
     impl_->require_not_deleted();
-    if (impl_->n_frames == 0) impl_->make_datasets(frame);
+    if (impl_->n_frames == 0) {
+        impl_->make_datasets(frame);
+        impl_->make_tables();
+    }
     const Impl& file = *impl_;
     if (file.n_particles > 0) {
         file.append(file.position, H5T_NATIVE_DOUBLE, frame.position.data());
@@ -267,6 +346,7 @@ void FrameFileWriter::add(const Frame& frame) {
         if (file.fragment >= 0) file.append(file.fragment, H5T_NATIVE_INT32, frame.fragment.data());
         file.append(file.stress, H5T_NATIVE_FLOAT, frame.stress.data());
     }
+    for (std::size_t k = 0; k < impl_->tables.size(); ++k) file.append_rows(impl_->tables[k], tables.at(k));
     file.append(file.step, H5T_NATIVE_INT64, &frame.step);
     // All that the new frame needs is on disk before /time counts it, wherever a kill hits.
     file.check(H5Fflush(file.file, H5F_SCOPE_LOCAL), "write");
@@ -283,6 +363,7 @@ void FrameFileWriter::close() {
     for (Hdf5Handle* dataset : {&file.time, &file.step, &file.position, &file.velocity, &file.damage,
                                 &file.damage_z, &file.fragment, &file.stress})
         closed = dataset->close() && closed;
+    for (Impl::Table& table : file.tables) closed = table.rows.close() && table.end.close() && closed;
     closed = file.file.close() && closed;
     if (!closed) file.fail("close the file");
 }

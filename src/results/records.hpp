@@ -79,6 +79,21 @@ struct FragmentRow {
     double damage = 0;                                        ///< mean fraction of broken bonds
 };
 
+/// A column of a table of numbers.
+struct TableColumn {
+    std::string name, unit;
+    std::vector<std::string> words = {};  ///< what cells 0, 1, ... stand for; below 0: nothing
+};
+
+/// A table that grows with the frames: NAME.csv, and /observed/NAME in results.h5.
+struct TableLayout {
+    std::string name;
+    std::vector<TableColumn> columns;
+};
+
+/// Cells of some rows of a table, row after row.
+using TableRows = std::vector<double>;
+
 struct Summary {
     std::string version, title, deck_hash, state_hash,
         outcome,       ///< "done", "interrupted", "failed: ..."
@@ -106,6 +121,7 @@ struct ResultPosition {
     std::int64_t history_bytes = 0, grains_bytes = 0, reactions_bytes = 0;
     std::int64_t xdmf_bytes = 0, pvd_bytes = 0;  ///< without the closing tags
     std::int64_t fragments_bytes = 0;
+    std::vector<std::int64_t> tables_bytes = {};  ///< of each TableLayout
 };
 
 }  // namespace quern

@@ -37,8 +37,9 @@ constexpr std::size_t long_packet = 4096;
 /// A directory that can be written to, without what would tell of another run.
 const std::string& make_run_directory(const WriterOptions& options) {
     create_directory(options.directory);
-    for (const char* name : {"summary.json", "results.pvd", "strength.csv", "fragments.csv", "checkpoint.h5",
-                             "checkpoint.previous.h5"}) {
+    for (const char* name :
+         {"summary.json", "results.pvd", "strength.csv", "fragments.csv", "contacts.csv", "grain_stress.csv",
+          "regions.csv", "profiles.csv", "forces.csv", "checkpoint.h5", "checkpoint.previous.h5"}) {
         std::error_code error;
         if (options.resumed && name != std::string_view("summary.json")) continue;
         std::filesystem::remove(options.directory + "/" + name, error);
@@ -110,7 +111,7 @@ struct ResultWriter::Files {
           history(directory + "/history.csv"),
           grains(directory + "/grains.csv"),
           reactions(directory + "/reactions.csv"),
-          frames(directory + "/results.h5", dimension, options.title, options.domain),
+          frames(directory + "/results.h5", dimension, options.title, options.domain, options.tables),
           xdmf(directory + "/results.xdmf", dimension) {
         history.write(header(history_columns(dimension)));
         grains.write(header(grain_columns(dimension)));
@@ -122,6 +123,13 @@ struct ResultWriter::Files {
             fragments->flush();
         }
         if (options.vtp) vtp.emplace(directory);
+        for (const TableLayout& layout : options.tables) {
+            std::vector<std::string> columns;
+            for (const TableColumn& column : layout.columns) columns.push_back(column.name);
+            tables.push_back({layout, std::make_unique<OutputFile>(directory + "/" + layout.name + ".csv")});
+            tables.back().file->write(header(columns));
+            tables.back().file->flush();
+        }
     }
     Files(const WriterOptions& options, const ResultPosition& position)
         : directory(make_run_directory(options)),
@@ -130,10 +138,14 @@ struct ResultWriter::Files {
           history(directory + "/history.csv", position.history_bytes),
           grains(directory + "/grains.csv", position.grains_bytes),
           reactions(directory + "/reactions.csv", position.reactions_bytes),
-          frames(directory + "/results.h5", dimension, position.n_frames),
+          frames(directory + "/results.h5", dimension, position.n_frames, options.tables),
           xdmf(directory + "/results.xdmf", dimension, position) {
         if (options.fragments) fragments.emplace(directory + "/fragments.csv", position.fragments_bytes);
         if (options.vtp) vtp.emplace(directory, position);
+        for (std::size_t k = 0; k < options.tables.size(); ++k)
+            tables.push_back({options.tables[k],
+                              std::make_unique<OutputFile>(directory + "/" + options.tables[k].name + ".csv",
+                                                           position.tables_bytes.at(k))});
     }
 
     void write(const Packet& packet);
@@ -142,6 +154,12 @@ struct ResultWriter::Files {
     void write(const ReactionRow& row);
     void write(const FragmentRow& row);
 
+    struct GrowingTable {
+        TableLayout layout;
+        std::unique_ptr<OutputFile> file;
+        void write(const TableRows& rows);
+    };
+
     std::string directory;
     int dimension;
     OutputFile log, history, grains, reactions;
@@ -149,6 +167,7 @@ struct ResultWriter::Files {
     FrameFileWriter frames;
     XdmfFile xdmf;
     std::optional<VtpSeries> vtp;
+    std::vector<GrowingTable> tables;
 };
 
 ResultWriter::ResultWriter(const WriterOptions& options) {
@@ -179,7 +198,10 @@ void ResultWriter::log(const std::string& line) {
     files_->log.flush();
 }
 
-Frame ResultWriter::add_frame(Frame frame) {
+Frame ResultWriter::add_frame(Frame frame, std::vector<TableRows> tables) {
+    if (tables.size() != files_->tables.size())
+        throw std::invalid_argument("ResultWriter: the tables of a frame are not those of the options");
+    packet_.tables = std::move(tables);
     packet_.frame = std::move(frame);
     packet_.has_frame = true;
     hand_over();
@@ -225,17 +247,21 @@ void ResultWriter::flush() {
     background_->wait();
     for (OutputFile* table : {&files_->history, &files_->grains, &files_->reactions}) table->flush();
     if (files_->fragments) files_->fragments->flush();
+    for (const Files::GrowingTable& table : files_->tables) table.file->flush();
 }
 
 ResultPosition ResultWriter::position() {
     flush();
+    std::vector<std::int64_t> tables;
+    for (const Files::GrowingTable& table : files_->tables) tables.push_back(table.file->size());
     return {files_->frames.n_frames(),
             files_->history.size(),
             files_->grains.size(),
             files_->reactions.size(),
             files_->xdmf.bytes(),
             files_->vtp ? files_->vtp->bytes() : 0,
-            files_->fragments ? files_->fragments->size() : 0};
+            files_->fragments ? files_->fragments->size() : 0,
+            tables};
 }
 
 double ResultWriter::busy_seconds() const {
@@ -256,11 +282,26 @@ void ResultWriter::Files::write(const Packet& packet) {
     for (const ReactionRow& row : packet.reactions) write(row);
     for (const FragmentRow& row : packet.fragments) write(row);
     if (!packet.has_frame) return;
-    frames.add(packet.frame);
+    for (std::size_t k = 0; k < tables.size(); ++k) tables[k].write(packet.tables[k]);
+    frames.add(packet.frame, packet.tables);
     xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty());
     if (vtp) vtp->add(packet.frame);
     for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
     if (fragments) fragments->flush();
+    for (const GrowingTable& table : tables) table.file->flush();
+}
+
+void ResultWriter::Files::GrowingTable::write(const TableRows& rows) {
+    const std::size_t n_columns = layout.columns.size();
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const std::size_t c = i % n_columns;
+        const TableColumn& column = layout.columns[c];
+        if (column.words.empty())
+            file->write(fmt::format("{}", rows[i]));
+        else if (rows[i] >= 0.0)
+            file->write(csv_text(column.words.at(static_cast<std::size_t>(rows[i]))));
+        file->write(c + 1 == n_columns ? "\n" : ",");
+    }
 }
 
 void ResultWriter::Files::write(const HistoryRow& row) {

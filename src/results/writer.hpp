@@ -16,6 +16,7 @@ struct WriterOptions {
     int dimension = 2;
     bool vtp = false;
     bool fragments = false;                      ///< grains can break: fragments.csv
+    std::vector<TableLayout> tables = {};        ///< that grow with the frames
     std::string title = {};                      ///< of the pictures
     std::vector<double> domain = {};             ///< lower, then upper corner [m], 2 * dimension; empty: none
     std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
@@ -41,8 +42,9 @@ class ResultWriter {
     void write_text(const std::string& file_name, const std::string& text);  ///< e.g. deck.resolved.yaml
     void log(const std::string& line);                                       ///< run.log, flushed
 
-    /// results.h5, results.xdmf, frames/frame_00000.vtp. Gives back an older frame, for its memory.
-    Frame add_frame(Frame frame);
+    /// results.h5, results.xdmf, frames/frame_00000.vtp; `tables`: rows of WriterOptions::tables at its time.
+    /// Gives back an older frame, for its memory.
+    Frame add_frame(Frame frame, std::vector<TableRows> tables = {});
     void add_history(const HistoryRow& row);    ///< history.csv
     void add_grain(const GrainRow& row);        ///< grains.csv
     void add_reaction(const ReactionRow& row);  ///< reactions.csv

@@ -130,6 +130,7 @@ void pass_position(Checkpoint& checkpoint, ResultPosition& position) {
     checkpoint.value("xdmf bytes", position.xdmf_bytes);
     checkpoint.value("pvd bytes", position.pvd_bytes);
     checkpoint.value("fragments bytes", position.fragments_bytes);
+    for (std::int64_t& bytes : position.tables_bytes) checkpoint.value("table bytes", bytes);
 }
 
 template void pass_state(Checkpoint&, Scene<2>&, StepContext<2>&);

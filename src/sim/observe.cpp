@@ -19,6 +19,15 @@ Vec<Dim> velocity_now(const Scene<Dim>& scene, const StepContext<Dim>& now, int 
     return 0.5 * (scene.arrays.v_before[p] + scene.particles.v[p]);
 }
 
+double about_z(const Spin<2>& s) {
+    return s[0];
+}
+double about_z(const Spin<3>& s) {
+    return s[2];
+}
+
+}  // namespace
+
 template <int Dim>
 Particles<Dim> particles_now(const Scene<Dim>& scene, const StepContext<Dim>& now, const Grain<Dim>& grain) {
     Particles<Dim> particles;
@@ -29,15 +38,6 @@ Particles<Dim> particles_now(const Scene<Dim>& scene, const StepContext<Dim>& no
     }
     return particles;
 }
-
-double about_z(const Spin<2>& s) {
-    return s[0];
-}
-double about_z(const Spin<3>& s) {
-    return s[2];
-}
-
-}  // namespace
 
 template <int Dim>
 typename Observer<Dim>::Momenta& Observer<Dim>::Momenta::operator+=(const Momenta& other) {
@@ -327,6 +327,8 @@ std::string state_hash(const Scene<Dim>& scene) {
     return fmt::format("{:016x}", hash);
 }
 
+template Particles<2> particles_now<2>(const Scene<2>&, const StepContext<2>&, const Grain<2>&);
+template Particles<3> particles_now<3>(const Scene<3>&, const StepContext<3>&, const Grain<3>&);
 template class Observer<2>;
 template class Observer<3>;
 template class GrainTracker<2>;

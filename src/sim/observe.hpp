@@ -10,6 +10,10 @@
 
 namespace quern {
 
+/// Particles of a grain at the time of the positions: velocities are means of those half a step around it.
+template <int Dim>
+Particles<Dim> particles_now(const Scene<Dim>& scene, const StepContext<Dim>& now, const Grain<Dim>& grain);
+
 /// Follows the budget and the momenta of a run. All is evaluated between kick and drift: positions are those
 /// of time n, velocities are known half a step before and after.
 ///

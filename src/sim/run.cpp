@@ -19,6 +19,7 @@
 #include "src/results/stop_signals.hpp"
 #include "src/results/writer.hpp"
 #include "src/sim/checkpoint.hpp"
+#include "src/sim/observation.hpp"
 #include "src/sim/observe.hpp"
 #include "src/sim/reactions.hpp"
 #include "src/sim/step.hpp"
@@ -47,8 +48,9 @@ class Schedule {
   public:
     explicit Schedule(double interval) : interval_(interval) {}
     void pass(Checkpoint& checkpoint) { checkpoint.value("next due", next_); }
+    bool is_due(double time, double dt) const { return time >= next_ - 0.5 * dt; }
     bool due(double time, double dt) {
-        if (time < next_ - 0.5 * dt) return false;
+        if (!is_due(time, dt)) return false;
         while (next_ <= time + 0.5 * dt) next_ += interval_;
         return true;
     }
@@ -80,6 +82,7 @@ class Run {
         if (stopped) {
             tracker_.emplace(*scene_, deck_);
             files.resumed.emplace();
+            files.resumed->tables_bytes.resize(files.tables.size());
             pass(stopped->checkpoint, *files.resumed);
         }
         writer_.emplace(files);
@@ -135,6 +138,7 @@ class Run {
         out.dimension = Dim;
         out.vtp = deck_.output.vtp;
         out.fragments = !scene_->fragments.of_particle.empty();
+        if (deck_.observe.on) out.tables = observed_layouts(deck_);
         out.title = deck_.title;
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a]);
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a] + deck_.grid.extent[a]);
@@ -288,6 +292,7 @@ class Run {
             const bool due = deck_.output.checkpoint.every > 0 &&
                              now_.step % deck_.output.checkpoint.every == 0 && now_.step > first_step;
             if ((stop || due) && !now_.first) save();
+            now_.listing = deck_.observe.on && (last || frames_.is_due(now_.time, now_.dt));
             kick(*scene_, now_);
             const auto output_start = Clock::now();
             if (now_.first) observer_.start(*scene_, now_);
@@ -298,7 +303,10 @@ class Run {
             if (frames_.due(now_.time, now_.dt) || last) {
                 make_frame(*scene_, now_, frame_);
                 write_fragments();
-                frame_ = writer_->add_frame(std::move(frame_));
+                std::vector<TableRows> tables;
+                if (deck_.observe.on) tables = observe(deck_, *scene_, now_, frame_);
+                if (record_ && deck_.observe.on) record_->observed.push_back(tables);
+                frame_ = writer_->add_frame(std::move(frame_), std::move(tables));
             }
             progress.update(now_.step, now_.time, observer_.residual_relative());
             now_.stages.output += seconds_since(output_start);

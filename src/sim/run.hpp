@@ -22,6 +22,8 @@ struct RunRecord {
     std::vector<GrainRow> grains;        ///< as in grains.csv: by time, tracked grains in the deck's order
     std::vector<ReactionRow> reactions;  ///< as in reactions.csv
     std::vector<FragmentRow> fragments;  ///< as in fragments.csv
+    /// [n_frames] rows of each table of observed_layouts; empty without `observe`.
+    std::vector<std::vector<TableRows>> observed;
 };
 
 enum class RunOutcome { done, interrupted };

@@ -169,10 +169,13 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     for (const Wall<Dim>& wall : scene.walls) fastest = std::max(fastest, wall.velocity.norm());
     const bool springs = node_pairs(scene);
     const ContactTrial<Dim> trial{
-        now.dt, scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first};
+        now.dt,     scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first,
+        now.listing};
     const ContactReport<Dim>& report = std::visit(
         [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
         *scene.contact);
+    if (now.listing)
+        std::visit([&](auto& method) { method.list_contacts(view, now.contact_list); }, *scene.contact);
     apply_constraints(scene, now, true);
     if (auto* pairs = std::get_if<NodePairContact<Dim>>(&*scene.contact); pairs && !scene.constraints.empty())
         pairs->book_losses(view, trial);
@@ -277,7 +280,8 @@ StepContext<Dim> make_context(const Scene<Dim>& scene, double dt) {
 
 template <int Dim>
 void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
-    const double dt = now.first ? 0.5 * now.dt : now.dt;
+    const double dt = now.kick_time();
+    now.contact_list.clear();
     steer_walls(scene, now, dt);
     {
         const StageTimer timer(now.stages.internal_forces);

@@ -72,6 +72,10 @@ struct StepContext {
     double part_done() const { return first ? 0.0 : 0.5; }
 
     std::int64_t contact_nodes = 0, contacts = 0, sweeps = 0, searches = 0;  ///< summed over the steps
+
+    bool listing = false;                         ///< the next kick lists its contacts
+    std::vector<ContactPoint<Dim>> contact_list;  ///< of the last kick that did; positions in Scene::grains
+    double kick_time() const { return first ? 0.5 * dt : dt; }  ///< for which the forces of a kick act [s]
 };
 
 /// At time 0, nothing done yet.

@@ -71,6 +71,23 @@ Columns read_columns(const std::string& file) {
     return columns;
 }
 
+std::vector<std::string> read_texts(const std::string& file, std::string_view column) {
+    std::ifstream stream(file, std::ios::binary);
+    std::string line;
+    std::size_t wanted = 0, number = 0;
+    std::vector<std::string> texts;
+    while (std::getline(stream, line) && !stream.eof()) {
+        std::size_t c = 0;
+        for_each_cell(line, [&](std::string_view cell) {
+            if (number == 0 && cell == column) wanted = c;
+            if (number > 0 && c == wanted) texts.emplace_back(cell);
+            ++c;
+        });
+        ++number;
+    }
+    return texts;
+}
+
 std::map<int, Columns> split_by_grain(const Columns& all) {
     const std::vector<double>* grain = all.find("grain");
     if (!grain) return {{0, all}};

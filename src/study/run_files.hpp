@@ -26,6 +26,9 @@ struct Columns {
 /// length.
 Columns read_columns(const std::string& file);
 
+/// A column of texts of such a file.
+std::vector<std::string> read_texts(const std::string& file, std::string_view column);
+
 /// Rows of each grain by the column "grain"; all of grain 0 if there is none.
 std::map<int, Columns> split_by_grain(const Columns& all);
 

@@ -3,6 +3,7 @@
 #include <csignal>
 #include <thread>
 
+#include "src/results/hdf5_handle.hpp"
 #include "tests/sim/decks.hpp"
 #include "tests/sim/program.hpp"
 
@@ -31,6 +32,18 @@ grains:
   - {shape: ball, material: rubber, array: {counts: [2, 2, 2], origin: [0.7, 0.7, 0.7], step: [1.1, 1.1, 1.02]},
      velocity: [0, 0, -3]}
 )yaml";
+
+/// Numbers of a table in results.h5 by their bits; none if it is not there.
+std::vector<std::uint64_t> observed(const std::string& directory, const std::string& name) {
+    const Hdf5Handle file(H5Fopen((directory + "/results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
+                          H5Fclose);
+    if (H5Lexists(file, "observed", H5P_DEFAULT) <= 0) return {};
+    const Hdf5Handle rows(H5Dopen2(file, ("observed/" + name).c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Handle space(H5Dget_space(rows), H5Sclose);
+    std::vector<std::uint64_t> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    H5Dread(rows, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    return values;
+}
 
 struct Case {
     std::string deck;
@@ -76,8 +89,11 @@ void check_killed(const Case& c, int signal, const std::vector<int>& kills) {
     CHECK(n_resumed > 0);
     CHECK(contains(read_file(out + "/run.log"), "goes on from step"));
     CHECK(hash_in(out) == hash_in(whole));
-    for (const char* name : {"history.csv", "grains.csv", "reactions.csv", "fragments.csv", "results.xdmf"})
+    for (const char* name : {"history.csv", "grains.csv", "reactions.csv", "fragments.csv", "results.xdmf",
+                             "contacts.csv", "grain_stress.csv", "regions.csv", "profiles.csv", "forces.csv"})
         CHECK_MESSAGE(read_file(out + "/" + name) == read_file(whole + "/" + name), name);
+    for (const char* name : {"contacts", "contacts_end", "regions", "profiles"})
+        CHECK_MESSAGE(observed(out, name) == observed(whole, name), name);
 }
 
 const std::vector<std::string> often = {"output.checkpoint.every=20", "output.track=all"};
@@ -107,6 +123,16 @@ TEST_CASE("Resume: a wall that presses as hard as asked") {
                  "{side: x+}, {name: lid, point: [3, 5.9], normal: [0, -1], servo: {force: 9e4}}]");
     check_killed({lid, often, 1}, SIGKILL, {0, 60});
     check_killed({lid, often, 2}, SIGKILL, {45});
+}
+
+TEST_CASE("Resume: observed contacts, stress and profiles") {
+    const std::string seen =
+        "observe: {profiles: {up: {axis: y, bins: 7}}, regions: {low: {from: [0, 0], to: [6, 2]}}}\n";
+    std::vector<std::string> frames = often;
+    frames.emplace_back("output.interval=0.002");
+    check_killed({unequal_deck + seen, frames, 1}, SIGKILL, {0, 60, 30});
+    frames.emplace_back("contact.method=node_pair");
+    check_killed({unequal_deck + seen, frames, 2}, SIGKILL, {45});
 }
 
 TEST_CASE("Resume: an interrupt leaves a checkpoint without being asked to") {
