@@ -1,4 +1,4 @@
-// The command line: quern run | sweep | compare | check | schema | render | import | pack.
+// The command line: quern run | sweep | compare | check | schema | render | plot | import | pack.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -17,6 +17,7 @@
 #include "src/results/render.hpp"
 #include "src/sim/run.hpp"
 #include "src/study/compare.hpp"
+#include "src/study/plot.hpp"
 #include "src/study/sweep.hpp"
 
 namespace {
@@ -35,6 +36,9 @@ struct Arguments {
     SweepOptions sweep;
     CompareOptions compare;
     PackOptions pack;
+    PlotOptions plot;
+    bool list_plots = false;
+    std::vector<double> range;  ///< of the colours
     bool of_packings = false;
     bool markdown = false, profile = false;
     std::string resumed;  ///< folder of a run
@@ -106,7 +110,25 @@ int run(const Arguments& arguments) {
 }
 
 int draw(const Arguments& arguments) {
-    for (const std::string& file : render(arguments.render)) fmt::print("{}\n", file);
+    RenderOptions options = arguments.render;
+    if (arguments.range.size() == 2) {
+        options.low = arguments.range[0];
+        options.high = arguments.range[1];
+    }
+    for (const std::string& file : render(options)) fmt::print("{}\n", file);
+    return 0;
+}
+
+int draw_plots(const Arguments& arguments) {
+    if (arguments.list_plots) {
+        for (const auto& [name, about] : plot_names()) fmt::print("{:<16} {}\n", name, about);
+        return 0;
+    }
+    if (arguments.plot.directory.empty())
+        return report("plot: a folder of results is required (quern plot --help)", InputError::exit_code);
+    const PlotReport done = plot(arguments.plot);
+    for (const std::string& file : done.files) fmt::print("{}\n", file);
+    for (const auto& [name, missing] : done.left_out) fmt::print("left out         {}: {}\n", name, missing);
     return 0;
 }
 
@@ -157,6 +179,30 @@ void add_import(CLI::App& app, Arguments& arguments) {
         ->type_name("absolute|scaled")
         ->check(CLI::IsMember({"absolute", "scaled"}));
     peridem.add_flag("--force", arguments.import.force, "Overwrite files that exist");
+}
+
+CLI::App& add_plot(CLI::App& app, Arguments& arguments) {
+    PlotOptions& options = arguments.plot;
+    CLI::App& command = *app.add_subcommand("plot", "Draw all plots of a run; docs/observers.md");
+    command.add_option("directory", options.directory, "Folder of the results")->type_name("DIR");
+    command
+        .add_option("names", options.names,
+                    "Plots, as --list names them; default: all that there is data for")
+        ->type_name("PLOT");
+    command.add_flag("--list", arguments.list_plots, "Names of the plots and what they show");
+    command.add_option("-o,--output", options.output, "Folder of the pictures; default: DIR/plots")
+        ->type_name("FOLDER");
+    command
+        .add_option(
+            "--frame", options.frames,
+            "Frames of the profiles, the last of them for the other plots: numbers from 0, or last; default: "
+            "four of them")
+        ->type_name("K,...")
+        ->delimiter(',');
+    command.add_option("--region", options.region, "Region of the plot 'stress'")
+        ->type_name("NAME")
+        ->capture_default_str();
+    return command;
 }
 
 void add_overrides(CLI::App& command, Arguments& arguments) {
@@ -283,6 +329,7 @@ int parse_and_run(int argc, char** argv) {
     CLI::App& sweep_command = add_sweep(app, arguments);
     CLI::App& compare_command = add_compare(app, arguments);
     CLI::App& pack_command = add_pack(app, arguments);
+    CLI::App& plot_command = add_plot(app, arguments);
 
     CLI::App& check_command = *app.add_subcommand("check", "Check a deck and print it resolved, in SI units");
     check_command.add_option("deck", arguments.deck, "Deck (YAML)")->required()->type_name("DECK");
@@ -308,6 +355,13 @@ int parse_and_run(int argc, char** argv) {
                     "displacement...")
         ->type_name("NAME")
         ->capture_default_str();
+    render_command
+        .add_option("--range", arguments.range,
+                    "Ends of the colours, the same in every frame; default: by the data")
+        ->type_name("LOW HIGH")
+        ->expected(2);
+    render_command.add_flag("--dark", arguments.render.dark,
+                            "Black where nothing is; fields from zero up glow, as photoelastic grains do");
     render_command.add_option("--frame", arguments.render.frame, "last, all, or a number from 0")
         ->type_name("last|K|all")
         ->capture_default_str();
@@ -324,7 +378,7 @@ int parse_and_run(int argc, char** argv) {
     }
     if (app.get_subcommands().empty()) {
         return report(
-            "a command is required: run, sweep, compare, check, schema, render, import or pack (quern "
+            "a command is required: run, sweep, compare, check, schema, render, plot, import or pack (quern "
             "--help)",
             InputError::exit_code);
     }
@@ -347,6 +401,7 @@ int parse_and_run(int argc, char** argv) {
     }
     if (pack_command.parsed()) return make_pack(arguments);
     if (render_command.parsed()) return draw(arguments);
+    if (plot_command.parsed()) return draw_plots(arguments);
     if (app.got_subcommand("import")) {
         if (app.get_subcommand("import")->get_subcommands().empty())
             return report("a format is required: peridem (quern import --help)", InputError::exit_code);

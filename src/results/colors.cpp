@@ -19,6 +19,13 @@ constexpr double viridis[][3] = {{0.267, 0.005, 0.329}, {0.283, 0.141, 0.458}, {
                                  {0.135, 0.659, 0.518}, {0.267, 0.749, 0.441}, {0.478, 0.821, 0.318},
                                  {0.741, 0.873, 0.150}, {0.993, 0.906, 0.144}};
 
+/// After inferno (N. Smith and S. van der Walt, matplotlib), at five even stations.
+constexpr double inferno[][3] = {{0.0, 0.0, 0.0},
+                                 {0.342, 0.062, 0.429},
+                                 {0.736, 0.216, 0.330},
+                                 {0.978, 0.558, 0.035},
+                                 {0.988, 0.998, 0.645}};
+
 Rgb to_bytes(const double* rgb) {
     const auto byte = [](double c) {
         return static_cast<unsigned char>(std::lround(255.0 * std::clamp(c, 0.0, 1.0)));
@@ -32,6 +39,9 @@ std::vector<Rgb> make_table(ColorScale scale) {
         map->SetColorSpaceToDiverging();
         map->AddRGBPoint(0.0, 0.230, 0.299, 0.754);
         map->AddRGBPoint(1.0, 0.706, 0.016, 0.150);
+    } else if (scale == ColorScale::glowing) {
+        map->SetColorSpaceToLab();
+        for (int i = 0; i <= 4; ++i) map->AddRGBPoint(0.25 * i, inferno[i][0], inferno[i][1], inferno[i][2]);
     } else {
         map->SetColorSpaceToLab();
         for (int i = 0; i <= 10; ++i) map->AddRGBPoint(0.1 * i, viridis[i][0], viridis[i][1], viridis[i][2]);
@@ -62,6 +72,7 @@ ColorMap::ColorMap(ColorScale scale, double low, double high)
 
 Rgb ColorMap::color(double value) const {
     if (!std::isfinite(value)) return {128, 128, 128};
+    if (scale_ == ColorScale::uniform) return {205, 205, 205};
     if (scale_ == ColorScale::categorical) return category_color(value);
     const double fraction = std::clamp((value - low_) / (high_ - low_), 0.0, 1.0);
     return table_[static_cast<std::size_t>(std::lround(fraction * (table_size - 1)))];

@@ -14,7 +14,8 @@ using Rgb = std::array<unsigned char, 3>;
 /// Values to colours. Sequential: viridis (N. Smith and S. van der Walt, matplotlib), even steps look even
 /// and brightness alone carries the order. Diverging: blue to red through grey (K. Moreland, "Diverging
 /// color maps for scientific visualization", ISVC 2009). Categorical: hues a golden angle apart, in three
-/// brightnesses, so that any run of consecutive numbers differs.
+/// brightnesses, so that any run of consecutive numbers differs. Glowing: black to yellow over violet and
+/// orange, brightness alone carries the order.
 class ColorMap {
   public:
     ColorMap(ColorScale scale, double low, double high);  ///< high > low; both unused if categorical

@@ -22,9 +22,11 @@
 namespace quern {
 
 enum class ColorScale {
-    sequential,  ///< from zero up
-    diverging,   ///< either sign; zero in the middle
-    categorical  ///< a name, not a size
+    sequential,   ///< from zero up
+    diverging,    ///< either sign; zero in the middle
+    categorical,  ///< a name, not a size
+    glowing,      ///< from zero up, zero is black
+    uniform       ///< one grey
 };
 
 struct Field {

@@ -37,7 +37,11 @@ constexpr int oversampling = 2;
 // gaps would show as moire: there the discs are widened until those of a square lattice close up.
 constexpr double smallest_disc = 4.0;  // [pixel]
 constexpr double gapless = 1.35;       // sqrt(pi / 2) and some for strain
-constexpr Rgb ink = {40, 40, 40}, wall = {90, 90, 90};
+constexpr Rgb ink = {40, 40, 40}, wall = {90, 90, 90}, link_color = {160, 20, 30};
+
+bool has_color_bar(const Field& field) {
+    return field.scale != ColorScale::categorical && field.scale != ColorScale::uniform;
+}
 
 /// Replaces the Gaussian of the mapper: a disc, and a ball lit from the upper left of the viewer.
 constexpr const char* disc_shader =
@@ -97,7 +101,7 @@ Layout make_layout(const PictureOptions& options, const ViewAxes& axes) {
     }
     const double wide = layout.high[0] - layout.low[0], tall = layout.high[1] - layout.low[1];
     const double left = options.dimension == 2 ? 95 : 30, bottom = options.dimension == 2 ? 75 : 70, top = 75;
-    const double right = options.field.scale == ColorScale::categorical ? 35 : 150;
+    const double right = has_color_bar(options.field) ? 150 : 35;
     const double free_width = std::max(50.0, options.width - left - right);
     const double free_height = std::max(50.0, options.height - bottom - top);
     const double pixels_per_metre = std::min(free_width / wide, free_height / tall);
@@ -128,13 +132,21 @@ struct ParticlePicture::Impl {
         background->SetBackground(1.0, 1.0, 1.0);
         renderer->SetLayer(1);
         window.add(background);
+        if (options.dark) {
+            const double w = options.width, h = options.height;
+            night->SetBackground(0.0, 0.0, 0.0);
+            night->SetViewport(layout.x / w, layout.y / h, (layout.x + layout.width) / w,
+                               (layout.y + layout.height) / h);
+            window.add(night);
+        }
         window.add(renderer);
         window.add(make_overlay(oversampling, [this](Painter& painter) {
+            paint_links(painter);
             if (options.dimension == 2)
                 paint_axes(painter);
             else
                 paint_scale_bar(painter), paint_triad(painter);
-            if (options.field.scale != ColorScale::categorical) paint_color_bar(painter);
+            if (has_color_bar(options.field)) paint_color_bar(painter);
             paint_title(painter);
         }));
     }
@@ -221,6 +233,26 @@ struct ParticlePicture::Impl {
         cloud->GetPointData()->AddArray(radius);
         cloud->GetPointData()->SetScalars(color);
         caption = fmt::format("t = {:.4g} s     step {}", frame.time, frame.step);
+    }
+
+    void paint_links(Painter& painter) const {
+        for (const PictureLink& link : options.links) {
+            double pixels[2][2];
+            for (int end = 0; end < 2; ++end) {
+                const Point& at = end == 0 ? link.from : link.to;
+                const double seen[2] = {dot(at, axes.right), dot(at, axes.up)};
+                const double start[2] = {layout.x, layout.y}, length[2] = {layout.width, layout.height};
+                for (int c = 0; c < 2; ++c)
+                    pixels[end][c] =
+                        start[c] + (seen[c] - layout.low[c]) / (layout.high[c] - layout.low[c]) * length[c];
+            }
+            const double x = 0.5 * (pixels[0][0] + pixels[1][0]), y = 0.5 * (pixels[0][1] + pixels[1][1]);
+            if (x < layout.x || y < layout.y || x > layout.x + layout.width || y > layout.y + layout.height)
+                continue;
+            const double width = link.width * layout.width / (layout.high[0] - layout.low[0]);
+            painter.add_line(pixels[0][0], pixels[0][1], pixels[1][0], pixels[1][1], std::max(0.5, width),
+                             link_color);
+        }
     }
 
     void paint_axes(Painter& painter) const {
@@ -314,8 +346,8 @@ struct ParticlePicture::Impl {
     Layout layout;
     ColorMap colors;
     OffscreenWindow window;
-    vtkNew<vtkRenderer> background,
-        renderer;  // white everywhere; the plot, which clips what it does not show
+    // White everywhere; black where the plot is; the plot, which clips what it does not show.
+    vtkNew<vtkRenderer> background, night, renderer;
     vtkNew<vtkPointGaussianMapper> mapper;
     vtkNew<vtkPolyData> cloud;
     std::string caption;

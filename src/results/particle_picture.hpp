@@ -1,6 +1,7 @@
 // Particles as discs (2D) or shaded balls (3D), with all that a picture needs to be read.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -8,6 +9,12 @@
 #include "src/results/fields.hpp"
 
 namespace quern {
+
+/// A line over the particles.
+struct PictureLink {
+    std::array<double, 3> from{}, to{};  ///< [m]
+    double width = 0.0;                  ///< [m]; drawn half a pixel wide at least
+};
 
 struct PictureOptions {
     int width = 1200, height = 900;  ///< [pixel]
@@ -17,6 +24,8 @@ struct PictureOptions {
     std::vector<double> region = {};  ///< shown: lower, then upper corner [m]
     std::vector<double> domain = {};  ///< outlined: lower, then upper corner [m], or empty
     int dimension = 2;
+    bool dark = false;                    ///< the plot is black where no particle is
+    std::vector<PictureLink> links = {};  ///< in this order; what has its middle outside is left out
 };
 
 /// A camera for any number of frames of one run: same region, same colours.

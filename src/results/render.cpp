@@ -129,8 +129,13 @@ std::vector<std::string> render(const RenderOptions& options) {
                            .region = extent.region(run.domain()),
                            .domain = run.domain(),
                            .dimension = run.dimension()};
-    picture.high = top_of_colors(field, extent.largest());
-    picture.low = field.scale == ColorScale::diverging ? -picture.high : 0.0;
+    if (options.dark && field.scale == ColorScale::sequential) picture.field.scale = ColorScale::glowing;
+    picture.dark = options.dark;
+    picture.high = options.high.value_or(top_of_colors(field, extent.largest()));
+    picture.low = options.low.value_or(field.scale == ColorScale::diverging ? -picture.high : 0.0);
+    if (!(picture.low < picture.high))
+        throw InputError("range", fmt::format("{} to {}", picture.low, picture.high),
+                         "an upper end above the lower one");
 
     std::vector<std::string> files;
     {
@@ -146,6 +151,25 @@ std::vector<std::string> render(const RenderOptions& options) {
     const std::string movie = without_suffix(options.file) + ".mp4";
     if (options.frame == "all" && make_movie(options.file, movie)) files.push_back(movie);
     return files;
+}
+
+void draw_network(const std::string& directory, std::size_t frame, const std::vector<PictureLink>& links,
+                  const std::string& file) {
+    const std::string path = (std::filesystem::path(directory) / "results.h5").string();
+    const FrameFileReader run(path);
+    if (frame >= run.n_frames())
+        throw InputError("frame", fmt::format("{}", frame), fmt::format("less than {}", run.n_frames()),
+                         fmt::format("{} holds {} frames", path, run.n_frames()));
+    const Frame shown = run.read(frame);
+    Extent extent(run.dimension());
+    extent.add(shown, {});
+    ParticlePicture camera({.title = run.title(),
+                            .field = {"grain", "", "", ColorScale::uniform},
+                            .region = extent.region(run.domain()),
+                            .domain = run.domain(),
+                            .dimension = run.dimension(),
+                            .links = links});
+    camera.write_png(shown, std::vector<double>(shown.n(), 0.0), file);
 }
 
 }  // namespace quern

@@ -1,23 +1,32 @@
 // Pictures of particles and charts of numbers, drawn off screen by VTK.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "src/results/particle_picture.hpp"
 
 namespace quern {
 
 struct RenderOptions {
-    std::string directory;        ///< of a finished run
-    std::string file;             ///< .png; with frame = "all": pattern, number goes before ".png"
-    std::string field = "speed";  ///< speed, velocity_x.., damage, damage_z, grain, fragment, von_mises,
-                                  ///< pressure, stress_xx.., principal_difference, displacement
-    std::string frame = "last";   ///< last, all, or a number from 0
+    std::string directory;            ///< of a finished run
+    std::string file;                 ///< .png; with frame = "all": pattern, number goes before ".png"
+    std::string field = "speed";      ///< speed, velocity_x.., damage, damage_z, grain, fragment, von_mises,
+                                      ///< pressure, stress_xx.., principal_difference, displacement
+    std::string frame = "last";       ///< last, all, or a number from 0
+    std::optional<double> low, high;  ///< of the colours; none: by what the frames hold
+    bool dark = false;                ///< black where nothing is; fields from zero up glow
     int width = 1200, height = 900;
 };
 
 /// Draws frames of DIR/results.h5. Returns the files written. Throws InputError for an unknown field or
 /// frame (naming the valid ones), OutputError if nothing can be drawn.
 std::vector<std::string> render(const RenderOptions& options);
+
+/// Draws one frame of DIR/results.h5 in grey with lines over it. Throws as render.
+void draw_network(const std::string& directory, std::size_t frame, const std::vector<PictureLink>& links,
+                  const std::string& file);
 
 /// A line of a chart.
 struct ChartLine {
