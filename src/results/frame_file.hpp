@@ -24,9 +24,11 @@ namespace quern {
 
 class FrameFileWriter {
   public:
-    /// domain: lower then upper corner [m], 2 * dimension numbers, or empty where there is none.
+    /// domain: lower then upper corner [m], 2 * dimension numbers, or empty where there is none. periods: of
+    /// each axis [m], 0: it does not repeat; or empty.
     FrameFileWriter(const std::string& path, int dimension, const std::string& title,
-                    const std::vector<double>& domain, const std::vector<TableLayout>& tables = {});
+                    const std::vector<double>& domain, const std::vector<TableLayout>& tables = {},
+                    const std::vector<double>& periods = {});
     /// Goes on behind the first n_frames of a file; what follows them is cut off. Throws InputError if the
     /// file cannot be read or has fewer.
     FrameFileWriter(const std::string& path, int dimension, std::int64_t n_frames,
@@ -54,8 +56,9 @@ class FrameFileReader {
     std::size_t n_frames() const;
     std::size_t n_particles() const;
     const std::string& title() const;
-    const std::vector<double>& domain() const;  ///< lower, upper corner [m]; empty where unknown
-    Frame read(std::size_t frame) const;        ///< frame < n_frames()
+    const std::vector<double>& domain() const;   ///< lower, upper corner [m]; empty where unknown
+    const std::vector<double>& periods() const;  ///< of each axis [m], 0: none; empty: none at all
+    Frame read(std::size_t frame) const;         ///< frame < n_frames()
 
   private:
     struct Impl;

@@ -17,7 +17,7 @@ struct FrameFileReader::Impl {
     bool has_damage_z = false, has_fragment = false;
     std::size_t n_frames = 0, n_particles = 0;
     std::string title;
-    std::vector<double> domain, time, volume;
+    std::vector<double> domain, periods, time, volume;
     std::vector<std::int64_t> step;
     std::vector<std::int32_t> grain;
 
@@ -63,6 +63,17 @@ struct FrameFileReader::Impl {
         return {H5Aopen(file, name, H5P_DEFAULT), H5Aclose};
     }
 
+    /// Leaves `numbers` empty where the file has no such attribute.
+    void read_numbers(const char* name, std::size_t n, std::vector<double>& numbers) {
+        const Hdf5Handle values = attribute(name);
+        if (values < 0) return;
+        const Hdf5Handle space(H5Aget_space(values), H5Sclose);
+        numbers.resize(n);
+        const bool fits = H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(n);
+        if (!fits || H5Aread(values, H5T_NATIVE_DOUBLE, numbers.data()) < 0)
+            fail(std::string("an unreadable attribute ") + name);
+    }
+
     void read_attributes() {
         if (const Hdf5Handle text = attribute("title"); text >= 0) {
             const Hdf5Handle type(H5Aget_type(text), H5Tclose);
@@ -72,13 +83,8 @@ struct FrameFileReader::Impl {
             title = characters;
             H5free_memory(characters);
         }
-        if (const Hdf5Handle corners = attribute("domain"); corners >= 0) {
-            const Hdf5Handle space(H5Aget_space(corners), H5Sclose);
-            domain.resize(2 * static_cast<std::size_t>(dimension));
-            const bool fits = H5Sget_simple_extent_npoints(space) == static_cast<hssize_t>(domain.size());
-            if (!fits || H5Aread(corners, H5T_NATIVE_DOUBLE, domain.data()) < 0)
-                fail("an unreadable attribute domain");
-        }
+        read_numbers("domain", 2 * static_cast<std::size_t>(dimension), domain);
+        read_numbers("periods", static_cast<std::size_t>(dimension), periods);
     }
 
     /// Every dataset must hold at least the frames that /time counts, of one number of particles.
@@ -147,6 +153,10 @@ const std::string& FrameFileReader::title() const {
 }
 const std::vector<double>& FrameFileReader::domain() const {
     return impl_->domain;
+}
+
+const std::vector<double>& FrameFileReader::periods() const {
+    return impl_->periods;
 }
 
 Frame FrameFileReader::read(std::size_t index) const {

@@ -283,7 +283,8 @@ struct FrameFileWriter::Impl {
 };
 
 FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const std::string& title,
-                                 const std::vector<double>& domain, const std::vector<TableLayout>& tables)
+                                 const std::vector<double>& domain, const std::vector<TableLayout>& tables,
+                                 const std::vector<double>& periods)
     : impl_(new Impl(path, dimension, tables)) {
     silence_hdf5();
     const Hdf5Handle access = impl_->access();
@@ -295,6 +296,7 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, const s
     impl_->add_attribute(impl_->file, "version", QUERN_VERSION);
     impl_->add_attribute(impl_->file, "title", title);
     if (!domain.empty()) impl_->add_attribute(impl_->file, "domain", domain);
+    if (!periods.empty()) impl_->add_attribute(impl_->file, "periods", periods);
     impl_->check(H5Fflush(impl_->file, H5F_SCOPE_LOCAL), "write");
 }
 

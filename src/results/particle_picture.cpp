@@ -205,6 +205,25 @@ struct ParticlePicture::Impl {
         camera->SetClippingRange(0.1 * depth, 4.0 * depth);
     }
 
+    /// visit(x) for the point in the domain and its copies in the region; just for itself where nothing
+    /// repeats.
+    template <class Visit>
+    void for_each_copy(Point x, Visit&& visit, std::size_t axis = 0) const {
+        if (axis == options.periods.size()) {
+            visit(x);
+            return;
+        }
+        const double period = options.periods[axis];
+        if (period == 0.0) {
+            for_each_copy(x, visit, axis + 1);
+            return;
+        }
+        const double low = options.region[axis],
+                     high = options.region[axis + static_cast<std::size_t>(options.dimension)];
+        for (x[axis] -= period * std::floor((x[axis] - low) / period); x[axis] <= high; x[axis] += period)
+            for_each_copy(x, visit, axis + 1);
+    }
+
     void set_particles(const Frame& frame, const std::vector<double>& values) {
         vtkNew<vtkPoints> points;
         vtkNew<vtkFloatArray> radius;
@@ -219,13 +238,15 @@ struct ParticlePicture::Impl {
             const double* x = &frame.position[i * d];
             const double z = d == 3 ? x[2] : 0.0;
             if (!std::isfinite(x[0] + x[1] + z)) continue;
-            const vtkIdType id = points->InsertNextPoint(x[0], x[1], z);
-            vertices->InsertNextCell(1, &id);
             const double r = particle_radius(frame.volume[i], frame.dimension);
             const bool small = frame.dimension == 2 && r * pixels_per_metre < smallest_disc;
-            radius->InsertNextValue(static_cast<float>(small ? gapless * r : r));
             const Rgb rgb = colors.color(values[i]);
-            color->InsertNextTypedTuple(rgb.data());
+            for_each_copy({x[0], x[1], z}, [&](const Point& at) {
+                const vtkIdType id = points->InsertNextPoint(at.data());
+                vertices->InsertNextCell(1, &id);
+                radius->InsertNextValue(static_cast<float>(small ? gapless * r : r));
+                color->InsertNextTypedTuple(rgb.data());
+            });
         }
         cloud->Initialize();
         cloud->SetPoints(points);
@@ -236,22 +257,31 @@ struct ParticlePicture::Impl {
     }
 
     void paint_links(Painter& painter) const {
+        const double width_of_metre = layout.width / (layout.high[0] - layout.low[0]);
+        const auto pixel = [&](const Point& at, int c) {
+            const double seen = dot(at, c == 0 ? axes.right : axes.up);
+            const double start = c == 0 ? layout.x : layout.y, length = c == 0 ? layout.width : layout.height;
+            return start + (seen - layout.low[c]) / (layout.high[c] - layout.low[c]) * length;
+        };
         for (const PictureLink& link : options.links) {
-            double pixels[2][2];
-            for (int end = 0; end < 2; ++end) {
-                const Point& at = end == 0 ? link.from : link.to;
-                const double seen[2] = {dot(at, axes.right), dot(at, axes.up)};
-                const double start[2] = {layout.x, layout.y}, length[2] = {layout.width, layout.height};
-                for (int c = 0; c < 2; ++c)
-                    pixels[end][c] =
-                        start[c] + (seen[c] - layout.low[c]) / (layout.high[c] - layout.low[c]) * length[c];
+            Point middle, half;
+            for (std::size_t c = 0; c < 3; ++c) {
+                middle[c] = 0.5 * (link.from[c] + link.to[c]);
+                half[c] = 0.5 * (link.to[c] - link.from[c]);
             }
-            const double x = 0.5 * (pixels[0][0] + pixels[1][0]), y = 0.5 * (pixels[0][1] + pixels[1][1]);
-            if (x < layout.x || y < layout.y || x > layout.x + layout.width || y > layout.y + layout.height)
-                continue;
-            const double width = link.width * layout.width / (layout.high[0] - layout.low[0]);
-            painter.add_line(pixels[0][0], pixels[0][1], pixels[1][0], pixels[1][1], std::max(0.5, width),
-                             link_color);
+            for_each_copy(middle, [&](const Point& at) {
+                const double x = pixel(at, 0), y = pixel(at, 1);
+                if (x < layout.x || y < layout.y || x > layout.x + layout.width ||
+                    y > layout.y + layout.height)
+                    return;
+                Point from, to;
+                for (std::size_t c = 0; c < 3; ++c) {
+                    from[c] = at[c] - half[c];
+                    to[c] = at[c] + half[c];
+                }
+                painter.add_line(pixel(from, 0), pixel(from, 1), pixel(to, 0), pixel(to, 1),
+                                 std::max(0.5, link.width * width_of_metre), link_color);
+            });
         }
     }
 

@@ -23,6 +23,9 @@ struct PictureOptions {
     double low = 0.0, high = 1.0;     ///< of the colours; high > low
     std::vector<double> region = {};  ///< shown: lower, then upper corner [m]
     std::vector<double> domain = {};  ///< outlined: lower, then upper corner [m], or empty
+    /// Of each axis [m], 0: it does not repeat; empty: none does. Particles and links are drawn in the
+    /// domain, and again where a copy of them shows in the region.
+    std::vector<double> periods = {};
     int dimension = 2;
     bool dark = false;                    ///< the plot is black where no particle is
     std::vector<PictureLink> links = {};  ///< in this order; what has its middle outside is left out

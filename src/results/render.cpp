@@ -128,6 +128,7 @@ std::vector<std::string> render(const RenderOptions& options) {
                            .field = field,
                            .region = extent.region(run.domain()),
                            .domain = run.domain(),
+                           .periods = run.periods(),
                            .dimension = run.dimension()};
     if (options.dark && field.scale == ColorScale::sequential) picture.field.scale = ColorScale::glowing;
     picture.dark = options.dark;
@@ -167,6 +168,7 @@ void draw_network(const std::string& directory, std::size_t frame, const std::ve
                             .field = {"grain", "", "", ColorScale::uniform},
                             .region = extent.region(run.domain()),
                             .domain = run.domain(),
+                            .periods = run.periods(),
                             .dimension = run.dimension(),
                             .links = links});
     camera.write_png(shown, std::vector<double>(shown.n(), 0.0), file);

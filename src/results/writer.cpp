@@ -111,7 +111,8 @@ struct ResultWriter::Files {
           history(directory + "/history.csv"),
           grains(directory + "/grains.csv"),
           reactions(directory + "/reactions.csv"),
-          frames(directory + "/results.h5", dimension, options.title, options.domain, options.tables),
+          frames(directory + "/results.h5", dimension, options.title, options.domain, options.tables,
+                 options.periods),
           xdmf(directory + "/results.xdmf", dimension) {
         history.write(header(history_columns(dimension)));
         grains.write(header(grain_columns(dimension)));

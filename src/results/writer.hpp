@@ -15,10 +15,11 @@ struct WriterOptions {
     std::string directory;  ///< created, with its parents
     int dimension = 2;
     bool vtp = false;
-    bool fragments = false;                      ///< grains can break: fragments.csv
-    std::vector<TableLayout> tables = {};        ///< that grow with the frames
-    std::string title = {};                      ///< of the pictures
-    std::vector<double> domain = {};             ///< lower, then upper corner [m], 2 * dimension; empty: none
+    bool fragments = false;                ///< grains can break: fragments.csv
+    std::vector<TableLayout> tables = {};  ///< that grow with the frames
+    std::string title = {};                ///< of the pictures
+    std::vector<double> domain = {};       ///< lower, then upper corner [m], 2 * dimension; empty: none
+    std::vector<double> periods = {};      ///< of each axis [m], 0: it does not repeat; empty: none does
     std::optional<ResultPosition> resumed = {};  ///< goes on from here with the files of the directory
 };
 

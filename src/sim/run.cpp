@@ -142,6 +142,9 @@ class Run {
         out.title = deck_.title;
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a]);
         for (int a = 0; a < Dim; ++a) out.domain.push_back(deck_.grid.origin[a] + deck_.grid.extent[a]);
+        const std::array<bool, 3>& repeats = deck_.grid.periodic;
+        if (std::find(repeats.begin(), repeats.end(), true) != repeats.end())
+            for (int a = 0; a < Dim; ++a) out.periods.push_back(repeats[a] ? deck_.grid.extent[a] : 0.0);
         return out;
     }
 
