@@ -129,6 +129,8 @@ int draw_plots(const Arguments& arguments) {
     const PlotReport done = plot(arguments.plot);
     for (const std::string& file : done.files) fmt::print("{}\n", file);
     for (const auto& [name, missing] : done.left_out) fmt::print("left out         {}: {}\n", name, missing);
+    if (!done.left_out.empty())
+        fmt::print("what is observed is drawn of runs with observe in the deck: docs/observers.md\n");
     return 0;
 }
 

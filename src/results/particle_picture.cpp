@@ -239,7 +239,8 @@ struct ParticlePicture::Impl {
             const double z = d == 3 ? x[2] : 0.0;
             if (!std::isfinite(x[0] + x[1] + z)) continue;
             const double r = particle_radius(frame.volume[i], frame.dimension);
-            const bool small = frame.dimension == 2 && r * pixels_per_metre < smallest_disc;
+            const bool one_grey = options.field.scale == ColorScale::uniform;
+            const bool small = frame.dimension == 2 && (one_grey || r * pixels_per_metre < smallest_disc);
             const Rgb rgb = colors.color(values[i]);
             for_each_copy({x[0], x[1], z}, [&](const Point& at) {
                 const vtkIdType id = points->InsertNextPoint(at.data());

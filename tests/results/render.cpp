@@ -14,6 +14,7 @@
 
 #include "grid/error.hpp"
 #include "src/results/fields.hpp"
+#include "src/results/rose.hpp"
 #include "src/results/writer.hpp"
 #include "tests/results/samples.hpp"
 
@@ -158,6 +159,70 @@ TEST_CASE("Render: all frames are numbered and share their colours") {
     const Picture start = read_picture(files[0]), end = read_picture(files[2]);
     CHECK_FALSE(start == end);
     CHECK(end == draw(scratch, "displacement"));
+}
+
+TEST_CASE("Render: a range that is given holds for every frame, a dark plot is black where nothing is") {
+    const ScratchDirectory scratch;
+    write_run(scratch.path("run"), 2, 3);
+    RenderOptions options = make_options(scratch, "light.png");
+    options.field = "principal_difference";
+    const Picture plain = read_picture(render(options)[0]);
+    options.dark = true;
+    const Picture dark = read_picture(render(options)[0]);
+    const auto n_black = [](const Picture& picture) {
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+            n += picture.rgb[i] == 0 && picture.rgb[i + 1] == 0 && picture.rgb[i + 2] == 0;
+        return n;
+    };
+    CHECK(n_black(plain) == 0);
+    CHECK(n_black(dark) > 1500);  // measured 2358, bound 1500: between and around the particles
+    CHECK(dark.n_white() < plain.n_white());
+    // Far above all values: every particle is as dark as nothing.
+    options.high = 1e30;
+    const Picture off = read_picture(render(options)[0]);
+    CHECK(off.n_colors() < dark.n_colors());
+    options.low = 2e30;
+    CHECK_THROWS_WITH_AS(render(options), doctest::Contains("an upper end above the lower one"), InputError);
+}
+
+TEST_CASE("Render: links are drawn over grey grains") {
+    const ScratchDirectory scratch;
+    write_run(scratch.path("run"), 2, 2);
+    const auto red = [&](const std::vector<PictureLink>& links) {
+        const std::string file = scratch.path("network.png");
+        draw_network(scratch.path("run"), 1, links, file);
+        const Picture picture = read_picture(file);
+        std::size_t n = 0;
+        for (std::size_t i = 0; i < picture.rgb.size(); i += 3)
+            n += picture.rgb[i] > 120 && picture.rgb[i + 1] < 60 && picture.rgb[i + 2] < 60;
+        return n;
+    };
+    const PictureLink thin{{0.0, 0.0, 0.0}, {0.1, 0.1, 0.0}, 0.002},
+        thick{{0.0, 0.0, 0.0}, {0.1, 0.1, 0.0}, 0.006};
+    const PictureLink outside{{5.0, 0.0, 0.0}, {5.1, 0.1, 0.0}, 0.006};
+    CHECK(red({}) == 0);
+    CHECK(red({outside}) == 0);
+    const double ratio = static_cast<double>(red({thick})) / static_cast<double>(red({thin}));
+    CHECK(ratio == doctest::Approx(3.0).epsilon(0.2));  // measured 3.27, bound 3.8: edges are mixed
+    CHECK_THROWS_WITH_AS(draw_network(scratch.path("run"), 2, {}, scratch.path("x.png")),
+                         doctest::Contains("expected less than 2"), InputError);
+}
+
+TEST_CASE("Render: petals of a rose hold the directions, both ways") {
+    const double pi = 3.14159265358979323846;
+    const std::vector<double> density = petals({0.0, 0.05, -pi, 0.5 * pi}, 36);
+    const double each = 36.0 / (8.0 * 2.0 * pi);
+    CHECK(density[0] == doctest::Approx(3.0 * each));
+    CHECK(density[18] == doctest::Approx(3.0 * each));
+    CHECK(density[9] == doctest::Approx(each));
+    CHECK(density[27] == doctest::Approx(each));
+    double whole = 0.0;
+    for (const double d : density) whole += d * 2.0 * pi / 36.0;
+    CHECK(whole == doctest::Approx(1.0));
+    const ScratchDirectory scratch;
+    draw_rose({"normals", {0.1, 1.0, 2.0}, 0.3, 0.5}, scratch.path("rose.png"));
+    CHECK(read_picture(scratch.path("rose.png")).n_colors() > 40);
 }
 
 TEST_CASE("Render: ffmpeg is called where there is one") {
