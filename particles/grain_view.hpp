@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "grid/vec.hpp"
+#include "particles/von_mises.hpp"
 
 namespace quern {
 
@@ -44,6 +45,8 @@ struct GrainView {
     BondBits whole = {};          ///< [n_bonds] what the cracks of the start have left; empty = all
     BondBits kept = {};           ///< [n_bonds] bonds that never break; empty = none
     double strength = 1.0;        ///< its critical stretch over that of its material
+    std::span<const PlasticStrain<Dim>> plastic =
+        {};  ///< [n]; read by plastic models only, else may be empty
 };
 
 }  // namespace quern

@@ -7,7 +7,12 @@
 
 namespace quern {
 
-enum class ForceModel { lps, bond_based, peridem };  ///< peridem: lps as set by `set_peridem_options`
+enum class ForceModel {
+    lps,
+    bond_based,
+    peridem,  ///< lps as set by `set_peridem_options`
+    correspondence
+};
 enum class PlaneState { strain, stress };
 enum class Constants { plane, three_dimensional };  ///< of lps in 2D
 enum class Influence {
@@ -45,6 +50,9 @@ struct Material {
     Calibration calibration = Calibration::discrete;
     VolumeCorrection volume_correction = VolumeCorrection::none;
     SurfaceCorrection surface_correction = SurfaceCorrection::none;
+    double yield_stress = std::numeric_limits<double>::infinity();  ///< in tension; infinite: elastic [Pa]
+    double hardening_modulus = 0.0;                                 ///< linear, isotropic [Pa]
+    double stabilization = 0.5;  ///< of correspondence: stiffness against what is not uniform in a family
     double bond_damping =
         0.0;  ///< Kelvin-Voigt time: stress of the strain rate = bond_damping * stiffness [s]
     double critical_stretch = std::numeric_limits<double>::infinity();  ///< bonds break above it
@@ -54,6 +62,7 @@ struct Material {
     std::optional<StrengthScatter> strength;  ///< none: all grains alike
 
     double horizon_of(double dx) const { return horizon > 0.0 ? horizon : horizon_ratio * dx; }  ///< [m]
+    bool can_yield() const { return yield_stress < std::numeric_limits<double>::infinity(); }
     bool can_break() const {
         return fracture_energy > 0.0 || critical_stretch < std::numeric_limits<double>::infinity();
     }

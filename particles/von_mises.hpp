@@ -78,6 +78,16 @@ struct PlasticState {
     double J = 1.0;
 };
 
+/// The same history without the deformation, for bodies that know F: the elastic part of any F is
+/// be = J^(-2/3) F C_p^-1 F^T, so the state changes in plastic flow only and elastic motion is exactly
+/// reversible.
+template <int Dim>
+struct PlasticStrain {
+    SymTensor<Dim> inverse = sym_identity<Dim>();  ///< C_p^-1 = (Fp^T Fp)^-1, of determinant 1 [-]
+    double alpha = 0.0;
+    double uneven = 0.0;  ///< sum_j w |z|^2 V_i V_j of the last force, see correspondence.hpp [m^6 | m^8]
+};
+
 /// Components along the axes of the simulation; 2D without zz.
 template <int Dim>
 Mat<Dim> to_matrix(const SymTensor<Dim>& a) {
@@ -227,6 +237,27 @@ double elastic_energy(const PlasticState<Dim>& state, const VonMises& law) {
     const SymTensor<Dim> d = plus_identity<Dim>(state.be, -mean);
     const double x = isochoric_mean(half_square<Dim>(d), determinant<Dim>(d), mean - 1.0);
     return volume_energy(state.J, law) + 1.5 * law.shear_modulus * x;
+}
+
+/// Return of a body of gradient F, J = det F; `strain` stays as it is.
+template <int Dim>
+PlasticReturn<Dim> return_to_yield(const PlasticStrain<Dim>& strain, const Mat<Dim>& F, double J,
+                                   const VonMises& law) {
+    const double shrink = 1.0 / std::cbrt(J * J);
+    SymTensor<Dim> be_tr = push_forward<Dim>(F, strain.inverse);
+    for (double& component : be_tr) component *= shrink;
+    return return_to_yield<Dim>(be_tr, strain.alpha, law);
+}
+
+/// The strain after a return at this F.
+template <int Dim>
+PlasticStrain<Dim> plastic_strain(const PlasticReturn<Dim>& now, const Mat<Dim>& F, double J) {
+    const double grow = std::cbrt(J * J);
+    PlasticStrain<Dim> strain;
+    strain.inverse = push_forward<Dim>(Mat<Dim>(F.inverse()), now.be);
+    strain.alpha = now.alpha;
+    for (double& component : strain.inverse) component *= grow;
+    return strain;
 }
 
 }  // namespace quern

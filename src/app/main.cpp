@@ -350,11 +350,12 @@ int parse_and_run(int argc, char** argv) {
         ->required()
         ->type_name("FILE");
     render_command
-        .add_option("--field", arguments.render.field,
-                    "speed, velocity_x, damage, damage_z, grain, fragment, von_mises, pressure, "
-                    "stress_xx, "
-                    "principal_difference, "
-                    "displacement...")
+        .add_option(
+            "--field", arguments.render.field,
+            "speed, velocity_x, damage, damage_z, plastic_strain, grain, fragment, von_mises, pressure, "
+            "stress_xx, "
+            "principal_difference, "
+            "displacement...")
         ->type_name("NAME")
         ->capture_default_str();
     render_command

@@ -10,7 +10,7 @@ struct MaterialInput : Material {
     std::optional<double> bulk, shear, young, poisson;
 };
 
-inline const std::vector<std::string> material_models = {"lps", "bond_based", "peridem"};
+inline const std::vector<std::string> material_models = {"lps", "bond_based", "peridem", "correspondence"};
 
 /// A regular arrangement: counts along the axes, x fastest.
 struct ArrayInput {

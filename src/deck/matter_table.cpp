@@ -76,12 +76,15 @@ Table<StrengthScatter> strength_table() {
     return t;
 }
 
+const std::vector<std::string> bond_models = {"lps", "bond_based", "peridem"};
+const std::vector<std::string> plastic_models = {"correspondence"};
+
 /// A number of which another key is the alternative: written where it is the one in use.
-void add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member, const char* unit,
-                     const Range& range, const char* about,
-                     const std::function<bool(const MaterialInput&)>& in_use) {
+Field<MaterialInput>& add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member,
+                                      const char* unit, const Range& range, const char* about,
+                                      const std::function<bool(const MaterialInput&)>& in_use) {
     const Key key{.name = name, .unit = unit, .range = range, .about = about};
-    t.add(
+    return t.add(
         key,
         [=](MaterialInput& m, const Cursor& at, const Context& now) {
             m.*member = read_number(at, now, key);
@@ -99,8 +102,8 @@ Table<MaterialInput> material_table() {
                     .form = Form::word,
                     .words = material_models,
                     .about =
-                        "Internal force: linear peridynamic solid, bond-based, or lps with the "
-                        "options of PeriDEM for defaults"};
+                        "Internal force: linear peridynamic solid, bond-based, lps with the options "
+                        "of PeriDEM for defaults, or stabilised correspondence"};
     t.add(
         model,
         [model](T& m, const Cursor& at, const Context& now) {
@@ -129,17 +132,31 @@ Table<MaterialInput> material_table() {
     t.word("influence", &T::influence, {"constant", "inverse", "conical", "gaussian"},
            "Weight of a bond: 1, 1/r, 1 - r or exp(-(2 r)^2), r = length / horizon");
     t.word("calibration", &T::calibration, {"none", "discrete"},
-           "Constants of the continuum, or of the sums over the actual neighbours");
+           "Constants of the continuum, or of the sums over the actual neighbours")
+        .only_for(bond_models);
     t.word(
         "volume_correction", &T::volume_correction, {"none", "linear"},
         "Volumes at the rim of a family: whole, or the share within the horizon; default of peridem: linear");
     t.word("surface_correction", &T::surface_correction, {"none", "volume"},
-           "Stiffen bonds near the surface by 2 V0 / (V_i + V_j)");
-    t.number("bond_damping", &T::bond_damping, "s", not_negative, "Kelvin-Voigt time of the bonds");
+           "Stiffen bonds near the surface by 2 V0 / (V_i + V_j)")
+        .only_for(bond_models);
+    t.number("yield_stress", &T::yield_stress, "Pa", or_infinite,
+             "Von Mises yield stress in tension, .inf: elastic")
+        .only_for(plastic_models);
+    t.number("hardening_modulus", &T::hardening_modulus, "Pa", not_negative,
+             "Growth of yield_stress with the equivalent plastic strain")
+        .only_for(plastic_models);
+    t.number("stabilization", &T::stabilization, "", positive,
+             "Stiffness, in shear moduli, against what is not uniform in a family")
+        .only_for({"correspondence"});
+    t.number("bond_damping", &T::bond_damping, "s", not_negative, "Kelvin-Voigt time of the bonds")
+        .only_for(bond_models);
     add_alternative(t, "critical_stretch", &T::critical_stretch, "", or_infinite,
-                    "Bonds break above it, .inf: never; or give fracture_energy", std::not_fn(by_energy));
+                    "Bonds break above it, .inf: never; or give fracture_energy", std::not_fn(by_energy))
+        .only_for(bond_models);
     add_alternative(t, "fracture_energy", &T::fracture_energy, "J/m^2", positive,
-                    "Gc, from which the critical stretch of every grain follows", by_energy);
+                    "Gc, from which the critical stretch of every grain follows", by_energy)
+        .only_for(bond_models);
     const Key formula{.name = "critical_stretch_formula",
                       .form = Form::word,
                       .words = {"energy_balance", "peridem"},
@@ -147,18 +164,21 @@ Table<MaterialInput> material_table() {
                           "With fracture_energy; default: energy_balance of the bonds across a plane; "
                           "default of peridem: its formula"};
     t.add(
-        formula,
-        [formula](T& m, const Cursor& at, const Context& now) {
-            m.critical_stretch_formula = static_cast<StretchFormula>(read_word(at, now, formula));
-        },
-        [=](const T& m, int) {
-            return by_energy(m) ? formula.words[static_cast<std::size_t>(m.critical_stretch_formula)]
-                                : std::string();
-        });
+         formula,
+         [formula](T& m, const Cursor& at, const Context& now) {
+             m.critical_stretch_formula = static_cast<StretchFormula>(read_word(at, now, formula));
+         },
+         [=](const T& m, int) {
+             return by_energy(m) ? formula.words[static_cast<std::size_t>(m.critical_stretch_formula)]
+                                 : std::string();
+         })
+        .only_for(bond_models);
     t.word("breaks_in", &T::breaks_in, {"tension", "both"},
-           "Bonds break when stretched, or when compressed as well; default of peridem: both");
+           "Bonds break when stretched, or when compressed as well; default of peridem: both")
+        .only_for(bond_models);
     t.section("strength", static_cast<std::optional<StrengthScatter> T::*>(&T::strength), strength_table(),
-              "Critical stretch that differs from grain to grain");
+              "Critical stretch that differs from grain to grain")
+        .only_for(bond_models);
     t.finish = finish_material;
     return t;
 }

@@ -84,6 +84,7 @@ std::vector<Field> all_fields(int dimension) {
                               ColorScale::diverging});
     fields.push_back({"damage", "", "damage"});
     fields.push_back({"damage_z", "", "largest stretch over critical"});
+    fields.push_back({"plastic_strain", "", "equivalent plastic strain"});
     fields.push_back({"grain", "", "grain", ColorScale::categorical});
     fields.push_back({"fragment", "", "fragment", ColorScale::categorical});
     fields.push_back({"von_mises", "Pa", "von Mises stress"});
@@ -137,6 +138,11 @@ std::vector<double> make_field_values(const Field& field, const Frame& frame, co
         if (frame.damage_z.size() != n)
             throw InputError("field", "'damage_z'", "another field", "no material of this run can break");
         values.assign(frame.damage_z.begin(), frame.damage_z.end());
+    } else if (name == "plastic_strain") {
+        if (frame.plastic_strain.size() != n)
+            throw InputError("field", "'plastic_strain'", "another field",
+                             "no material of this run can yield");
+        values.assign(frame.plastic_strain.begin(), frame.plastic_strain.end());
     } else if (name == "grain") {
         fill([&](std::size_t i) { return frame.grain[i]; });
     } else if (name == "fragment") {

@@ -5,6 +5,7 @@
 //   displacement           |x - x(first frame)|                                      [m]
 //   damage                 fraction of broken bonds                                  [1]
 //   damage_z               largest bond stretch over the critical one                [1]
+//   plastic_strain         equivalent plastic strain                                 [1]
 //   grain                  number of the grain                                       [1]
 //   fragment               number of the piece                                       [1]
 //   von_mises              sqrt(3/2 s:s), s the deviator of the full 3D stress       [Pa]

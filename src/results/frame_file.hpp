@@ -1,16 +1,17 @@
 // results.h5: particles over time, written frame by frame and read back.
 //
 //   /time [F]  /step [F]  /position [F, n, d]  /velocity [F, n, d]  /damage [F, n]  /stress [F, n, 4 | 6]
-//   /grain [n]  /volume [n]  and, where grains can break, /damage_z [F, n] and /fragment [F, n]
+//   /grain [n]  /volume [n]  and, where grains can break, /damage_z [F, n] and /fragment [F, n];
+//   where they can yield, /plastic_strain [F, n]
 //
 //   /observed/NAME [R, C]  /observed/NAME_end [F]   tables: rows of frame k are those from NAME_end[k - 1] up
 //                                                   to NAME_end[k]; attribute `columns`: their names
 //
 // F frames, n particles, d = 2 or 3. One chunk holds one frame of at most 4194304 particles. /damage,
-// /damage_z, /fragment, /grain and /volume are shuffled and deflated. /position, /velocity and /stress are
-// left plain: their last digits are noise, of which deflate takes off a quarter or less at a twentieth of the
-// speed of the disk. /time grows last, after a flush: a frame that a killed run has not finished is not
-// counted.
+// /damage_z, /fragment, /plastic_strain, /grain and /volume are shuffled and deflated. /position, /velocity
+// and /stress are left plain: their last digits are noise, of which deflate takes off a quarter or less at a
+// twentieth of the speed of the disk. /time grows last, after a flush: a frame that a killed run has not
+// finished is not counted.
 #pragma once
 
 #include <cstdint>

@@ -14,7 +14,7 @@ struct FrameFileReader::Impl {
     std::string path;
     Hdf5Handle file;
     int dimension = 2;
-    bool has_damage_z = false, has_fragment = false;
+    bool has_damage_z = false, has_fragment = false, has_plastic_strain = false;
     std::size_t n_frames = 0, n_particles = 0;
     std::string title;
     std::vector<double> domain, periods, time, volume;
@@ -106,6 +106,8 @@ struct FrameFileReader::Impl {
         if (has_damage_z) require("damage_z", shape("damage_z", 2), {n});
         has_fragment = H5Lexists(file, "fragment", H5P_DEFAULT) > 0;
         if (has_fragment) require("fragment", shape("fragment", 2), {n});
+        has_plastic_strain = H5Lexists(file, "plastic_strain", H5P_DEFAULT) > 0;
+        if (has_plastic_strain) require("plastic_strain", shape("plastic_strain", 2), {n});
         require("stress", shape("stress", 3), {n, d == 2 ? 4u : 6u});
         require("step", shape("step", 1), {});
         if (shape("volume", 1)[0] != n) fail("a dataset /volume that does not fit /grain");
@@ -171,12 +173,15 @@ Frame FrameFileReader::read(std::size_t index) const {
     frame.damage.resize(n);
     if (file.has_damage_z) frame.damage_z.resize(n);
     if (file.has_fragment) frame.fragment.resize(n);
+    if (file.has_plastic_strain) frame.plastic_strain.resize(n);
     frame.stress.resize(n * (d == 2 ? 4 : 6));
     file.read("position", H5T_NATIVE_DOUBLE, index, 1, frame.position);
     file.read("velocity", H5T_NATIVE_FLOAT, index, 1, frame.velocity);
     file.read("damage", H5T_NATIVE_FLOAT, index, 1, frame.damage);
     if (file.has_damage_z) file.read("damage_z", H5T_NATIVE_FLOAT, index, 1, frame.damage_z);
     if (file.has_fragment) file.read("fragment", H5T_NATIVE_INT32, index, 1, frame.fragment);
+    if (file.has_plastic_strain)
+        file.read("plastic_strain", H5T_NATIVE_FLOAT, index, 1, frame.plastic_strain);
     file.read("stress", H5T_NATIVE_FLOAT, index, 1, frame.stress);
     frame.grain = file.grain;
     frame.volume = file.volume;

@@ -42,7 +42,7 @@ struct FrameFileWriter::Impl {
     std::string path;
     int dimension;
     Hdf5Handle file;
-    Hdf5Handle time, step, position, velocity, damage, damage_z, fragment, stress;
+    Hdf5Handle time, step, position, velocity, damage, damage_z, fragment, plastic_strain, stress;
     hsize_t n_frames = 0, n_particles = 0;
     struct Table {
         TableLayout layout;
@@ -135,6 +135,9 @@ struct FrameFileWriter::Impl {
             fragment =
                 add_dataset("fragment", H5T_STD_I32LE, {0, n}, Packing::deflated, "1",
                             "fragment of each particle: grains as placed, then pieces as they broke off");
+        if (!first.plastic_strain.empty())
+            plastic_strain = add_dataset("plastic_strain", single, {0, n}, Packing::deflated, "1",
+                                         "equivalent plastic strain");
         stress = add_dataset("stress", single, {0, n, d == 2 ? 4u : 6u}, Packing::plain, "Pa",
                              fmt::format("Cauchy stress {}, tension positive", stress_components(dimension)));
         const Hdf5Handle grain = add_dataset("grain", H5T_STD_I32LE, {n}, Packing::deflated, "1",
@@ -228,8 +231,9 @@ struct FrameFileWriter::Impl {
                                             {&damage, "damage"},
                                             {&damage_z, "damage_z"},
                                             {&fragment, "fragment"},
+                                            {&plastic_strain, "plastic_strain"},
                                             {&stress, "stress"}}) {
-            const bool optional = dataset == &damage_z || dataset == &fragment;
+            const bool optional = dataset == &damage_z || dataset == &fragment || dataset == &plastic_strain;
             if (optional && H5Lexists(file, name, H5P_DEFAULT) <= 0) continue;
             *dataset = checked(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, "open a dataset");
             std::array<hsize_t, 3> shape{};
@@ -269,6 +273,8 @@ struct FrameFileWriter::Impl {
                           (n_frames == 0 || n == 0 || frame.damage_z.empty() == (damage_z < 0)) &&
                           (frame.fragment.empty() || frame.fragment.size() == n) &&
                           (n_frames == 0 || n == 0 || frame.fragment.empty() == (fragment < 0)) &&
+                          (frame.plastic_strain.empty() || frame.plastic_strain.size() == n) &&
+                          (n_frames == 0 || n == 0 || frame.plastic_strain.empty() == (plastic_strain < 0)) &&
                           frame.stress.size() == n * (d == 2 ? 4 : 6);
         if (!fits)
             throw std::invalid_argument(
@@ -320,7 +326,7 @@ FrameFileWriter::FrameFileWriter(const std::string& path, int dimension, std::in
         return;
     }
     for (const char* name : {"time", "step", "position", "velocity", "damage", "damage_z", "fragment",
-                             "stress", "grain", "volume", "observed"})
+                             "plastic_strain", "stress", "grain", "volume", "observed"})
         if (H5Lexists(impl_->file, name, H5P_DEFAULT) > 0)
             impl_->check(H5Ldelete(impl_->file, name, H5P_DEFAULT), "remove an old dataset");
 }
@@ -346,6 +352,8 @@ void FrameFileWriter::add(const Frame& frame, const std::vector<TableRows>& tabl
         file.append(file.damage, H5T_NATIVE_FLOAT, frame.damage.data());
         if (file.damage_z >= 0) file.append(file.damage_z, H5T_NATIVE_FLOAT, frame.damage_z.data());
         if (file.fragment >= 0) file.append(file.fragment, H5T_NATIVE_INT32, frame.fragment.data());
+        if (file.plastic_strain >= 0)
+            file.append(file.plastic_strain, H5T_NATIVE_FLOAT, frame.plastic_strain.data());
         file.append(file.stress, H5T_NATIVE_FLOAT, frame.stress.data());
     }
     for (std::size_t k = 0; k < impl_->tables.size(); ++k) file.append_rows(impl_->tables[k], tables.at(k));
@@ -363,7 +371,7 @@ void FrameFileWriter::close() {
     file.require_not_deleted();
     bool closed = true;
     for (Hdf5Handle* dataset : {&file.time, &file.step, &file.position, &file.velocity, &file.damage,
-                                &file.damage_z, &file.fragment, &file.stress})
+                                &file.damage_z, &file.fragment, &file.plastic_strain, &file.stress})
         closed = dataset->close() && closed;
     for (Impl::Table& table : file.tables) closed = table.rows.close() && table.end.close() && closed;
     closed = file.file.close() && closed;

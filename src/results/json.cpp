@@ -60,6 +60,7 @@ std::string make_energy(const EnergyBudget& energy, double residual_relative) {
     block.add("friction", json_number(energy.friction));
     block.add("contact_loss", json_number(energy.contact_loss));
     block.add("fracture", json_number(energy.fracture));
+    block.add("plastic", json_number(energy.plastic));
     block.add("transfer_loss", json_number(energy.transfer_loss));
     block.add("external_work", json_number(energy.external_work));
     block.add("residual", json_number(energy.residual));

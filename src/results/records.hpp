@@ -13,11 +13,12 @@ namespace quern {
 struct Frame {
     int dimension = 2;
     std::int64_t step = 0;
-    double time = 0.0;             ///< [s]
-    std::vector<double> position;  ///< [n * dimension] [m]
-    std::vector<float> velocity;   ///< [n * dimension] [m/s]
-    std::vector<float> damage;     ///< [n] fraction of broken bonds
-    std::vector<float> damage_z;   ///< [n] stretch of the worst bond over the critical; empty: none can break
+    double time = 0.0;                  ///< [s]
+    std::vector<double> position;       ///< [n * dimension] [m]
+    std::vector<float> velocity;        ///< [n * dimension] [m/s]
+    std::vector<float> damage;          ///< [n] fraction of broken bonds
+    std::vector<float> plastic_strain;  ///< [n] equivalent plastic strain; empty: nothing can yield
+    std::vector<float> damage_z;  ///< [n] stretch of the worst bond over the critical; empty: none can break
     std::vector<float>
         stress;  ///< [n * (4 in 2D: xx, yy, xy, zz | 6 in 3D: xx, yy, zz, xy, yz, xz)] Cauchy [Pa]
     std::vector<std::int32_t> grain;     ///< [n]
@@ -28,11 +29,12 @@ struct Frame {
 
 /// Energy budget at one time [J; 2D: J/m]. Works are counted from the start of the clock.
 /// kinetic + elastic + contact_elastic + gravity + damping + friction + contact_loss + fracture +
-/// transfer_loss - external_work
+/// plastic + transfer_loss - external_work
 /// - (its value at the start) = residual.
 struct EnergyBudget {
-    double kinetic = 0, elastic = 0, contact_elastic = 0, gravity = 0;                    ///< stored
-    double damping = 0, friction = 0, contact_loss = 0, fracture = 0, transfer_loss = 0;  ///< dissipated
+    double kinetic = 0, elastic = 0, contact_elastic = 0, gravity = 0;  ///< stored
+    double damping = 0, friction = 0, contact_loss = 0, fracture = 0, plastic = 0,
+           transfer_loss = 0;  ///< dissipated; plastic: what hardening stores as well
     double external_work = 0;  ///< by loads, constraints and moving walls
     double residual = 0;       ///< what is missing
     double throughput = 0;     ///< largest stored plus dissipated energy that changed hands so far

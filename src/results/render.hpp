@@ -10,10 +10,11 @@
 namespace quern {
 
 struct RenderOptions {
-    std::string directory;            ///< of a finished run
-    std::string file;                 ///< .png; with frame = "all": pattern, number goes before ".png"
-    std::string field = "speed";      ///< speed, velocity_x.., damage, damage_z, grain, fragment, von_mises,
-                                      ///< pressure, stress_xx.., principal_difference, displacement
+    std::string directory;  ///< of a finished run
+    std::string file;       ///< .png; with frame = "all": pattern, number goes before ".png"
+    std::string field =
+        "speed";  ///< speed, velocity_x.., damage, damage_z, plastic_strain, grain,
+                  ///< fragment, von_mises, pressure, stress_xx.., principal_difference, displacement
     std::string frame = "last";       ///< last, all, or a number from 0
     std::optional<double> low, high;  ///< of the colours; none: by what the frames hold
     bool dark = false;                ///< black where nothing is; fields from zero up glow

@@ -105,6 +105,8 @@ void VtpSeries::add(const Frame& frame) {
     add_array<vtkFloatArray>(cloud, "damage", frame.damage, 1, 1);
     if (!frame.damage_z.empty()) add_array<vtkFloatArray>(cloud, "damage_z", frame.damage_z, 1, 1);
     if (!frame.fragment.empty()) add_array<vtkIntArray>(cloud, "fragment", frame.fragment, 1, 1);
+    if (!frame.plastic_strain.empty())
+        add_array<vtkFloatArray>(cloud, "plastic_strain", frame.plastic_strain, 1, 1);
     add_array<vtkDoubleArray>(cloud, "volume", frame.volume, 1, 1);
 
     vtkNew<vtkXMLPolyDataWriter> writer;

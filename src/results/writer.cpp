@@ -63,10 +63,10 @@ std::string header(const std::vector<std::string>& columns) {
 }  // namespace
 
 std::vector<std::string> history_columns(int dimension) {
-    std::vector<std::string> columns = {"time",       "kinetic",       "elastic",       "contact_elastic",
-                                        "gravity",    "damping",       "friction",      "contact_loss",
-                                        "fracture",   "transfer_loss", "external_work", "residual",
-                                        "throughput", "momentum_x",    "momentum_y"};
+    std::vector<std::string> columns = {"time",     "kinetic",    "elastic",       "contact_elastic",
+                                        "gravity",  "damping",    "friction",      "contact_loss",
+                                        "fracture", "plastic",    "transfer_loss", "external_work",
+                                        "residual", "throughput", "momentum_x",    "momentum_y"};
     if (dimension == 2) {
         columns.push_back("angular_momentum");
     } else {
@@ -285,7 +285,8 @@ void ResultWriter::Files::write(const Packet& packet) {
     if (!packet.has_frame) return;
     for (std::size_t k = 0; k < tables.size(); ++k) tables[k].write(packet.tables[k]);
     frames.add(packet.frame, packet.tables);
-    xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty());
+    xdmf.add(packet.frame.time, packet.frame.n(), !packet.frame.damage_z.empty(),
+             !packet.frame.plastic_strain.empty());
     if (vtp) vtp->add(packet.frame);
     for (OutputFile* table : {&history, &grains, &reactions}) table->flush();
     if (fragments) fragments->flush();
@@ -307,9 +308,10 @@ void ResultWriter::Files::GrowingTable::write(const TableRows& rows) {
 
 void ResultWriter::Files::write(const HistoryRow& row) {
     const EnergyBudget& e = row.energy;
-    std::string line = fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
-                                   e.contact_elastic, e.gravity, e.damping, e.friction, e.contact_loss,
-                                   e.fracture, e.transfer_loss, e.external_work, e.residual, e.throughput);
+    std::string line =
+        fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", row.time, e.kinetic, e.elastic,
+                    e.contact_elastic, e.gravity, e.damping, e.friction, e.contact_loss, e.fracture,
+                    e.plastic, e.transfer_loss, e.external_work, e.residual, e.throughput);
     line += cells(row.momentum, dimension);
     line += dimension == 2 ? fmt::format(",{}", row.angular_momentum[2]) : cells(row.angular_momentum, 3);
     history.write(fmt::format("{},{},{},{}\n", line, row.broken_bonds, row.fragments, row.debris));

@@ -51,7 +51,7 @@ XdmfFile::XdmfFile(std::string path, int dimension, const ResultPosition& positi
       dimension_(dimension),
       n_frames_(static_cast<std::size_t>(position.n_frames)) {}
 
-void XdmfFile::add(double time, std::size_t n, bool breakable) {
+void XdmfFile::add(double time, std::size_t n, bool breakable, bool plastic) {
     const std::size_t f = n_frames_++;
     const int d = dimension_;
     const std::vector<const char*> axes = {"xx", "yy", d == 2 ? "xy" : "zz", d == 2 ? "zz" : "xy",
@@ -77,6 +77,7 @@ void XdmfFile::add(double time, std::size_t n, bool breakable) {
         grid += attribute("damage_z", "Scalar", scalar_of("damage_z", "Float", f, n));
         grid += attribute("fragment", "Scalar", scalar_of("fragment", "Int", f, n));
     }
+    if (plastic) grid += attribute("plastic_strain", "Scalar", scalar_of("plastic_strain", "Float", f, n));
     grid += attribute("grain", "Scalar",
                       fmt::format("<DataItem Dimensions=\"{}\" NumberType=\"Int\" Precision=\"4\" "
                                   "Format=\"HDF\">results.h5:/grain</DataItem>",

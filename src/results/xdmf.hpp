@@ -16,7 +16,7 @@ class XdmfFile {
     /// Goes on behind the frames at `position`.
     XdmfFile(std::string path, int dimension, const ResultPosition& position);
     std::int64_t bytes() const { return file_.bytes(); }
-    void add(double time, std::size_t n_particles, bool breakable);
+    void add(double time, std::size_t n_particles, bool breakable, bool plastic);
 
   private:
     GrowingXmlFile file_;

@@ -17,6 +17,7 @@ void pass_ledger(Checkpoint& checkpoint, Ledger<Dim>& ledger) {
     checkpoint.value("ledger friction", past.friction);
     checkpoint.value("ledger wall", past.wall);
     checkpoint.value("ledger fracture", past.fracture);
+    checkpoint.value("ledger plastic", past.plastic);
     checkpoint.value("ledger transfer", past.transfer);
     checkpoint.value("ledger impulse", past.impulse);
     checkpoint.value("ledger moment", past.moment);
@@ -68,6 +69,7 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
     checkpoint.array("drift", std::span(scene.arrays.drift));
     checkpoint.array("x start", std::span(scene.x_start));
     checkpoint.array("bonds alive", std::span(scene.alive));
+    checkpoint.array("plastic strain", std::span(scene.plastic));
     for (Wall<Dim>& wall : scene.walls) {
         checkpoint.value("wall point", wall.point);
         checkpoint.value("wall velocity", wall.velocity);

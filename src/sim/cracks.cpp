@@ -1,5 +1,7 @@
 #include "src/sim/cracks.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "grid/error.hpp"
@@ -64,7 +66,15 @@ template <int Dim>
 void mark_cracked(const Deck& deck, Scene<Dim>& scene) {
     std::vector<bool> cracked(deck.materials.size(), false);
     for (const CrackDeck& crack : deck.cracks)
-        for_each_target(deck, scene, crack, [&](int g) { cracked[scene.grains[g].material] = true; });
+        for_each_target(deck, scene, crack, [&](int g) {
+            const Material& material = deck.materials[scene.grains[g].material];
+            if (material.model == ForceModel::correspondence)
+                throw InputError(
+                    crack.place.text(),
+                    fmt::format("a crack in grains of '{}', model: correspondence", material.name),
+                    "grains of another model", "name them by crack.grains");
+            cracked[scene.grains[g].material] = true;
+        });
     for (MaterialGroup<Dim>& group : scene.groups)
         group.breakable |= cracked[scene.grains[group.first_grain].material];
 }

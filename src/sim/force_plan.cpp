@@ -48,7 +48,8 @@ std::vector<int> sort_by_size(const Scene<Dim>& scene) {
     for (const MaterialGroup<Dim>& group : scene.groups) {
         const Grain<Dim>& grain = scene.grains[group.first_grain];
         const std::vector<IntVec<Dim>>& cells = grain.shape->cell;
-        if (group.batched || cells.empty()) continue;
+        if (group.batched || cells.empty() || std::holds_alternative<Correspondence<Dim>>(group.model))
+            continue;
         const int n_bonds = std::visit([](const auto& model) { return model.n_bonds(); }, group.model);
         IntVec<Dim> low = cells[0], high = cells[0];
         for (const IntVec<Dim>& cell : cells) {

@@ -8,12 +8,14 @@ namespace quern {
 
 namespace {
 
-struct Broken {
-    std::int64_t count = 0;
-    double released = 0.0;  ///< energy [J; 2D: J/m]
-    Broken& operator+=(const Broken& other) {
-        count += other.count;
+struct Losses {
+    std::int64_t broken = 0;
+    double released = 0.0;  ///< energy of the bonds that broke [J; 2D: J/m]
+    double plastic = 0.0;   ///< work of plastic flow [J; 2D: J/m]
+    Losses& operator+=(const Losses& other) {
+        broken += other.broken;
         released += other.released;
+        plastic += other.plastic;
         return *this;
     }
 };
@@ -36,7 +38,7 @@ class TaskForces {
   public:
     TaskForces(Scene<Dim>& scene, double elapsed) : scene_(scene), elapsed_(elapsed) {}
 
-    Broken compute(const ForceTask& task) const {
+    Losses compute(const ForceTask& task) const {
         const MaterialGroup<Dim>& group = scene_.group_of(task.grain[0]);
         if (task.union_batch >= 0) return compute_union(task, group, scene_.unions[task.union_batch]);
         return std::visit(
@@ -74,21 +76,28 @@ class TaskForces {
     }
 
     template <class Model>
-    Broken compute_grain(int g, const MaterialGroup<Dim>& group, const Model& model) const {
+    Losses compute_grain(int g, const MaterialGroup<Dim>& group, const Model& model) const {
         const GrainView<Dim> view = scene_.view(g);
-        Broken broken;
+        Losses losses;
         if (group.breakable) {
             thread_local std::vector<std::uint8_t> intact;
             intact.assign(view.alive.bytes().begin(), view.alive.bytes().end());
-            broken.count = model.break_bonds(view, scene_.alive_of(g));
-            if (broken.count > 0) {
-                broken.released = released(g, view, intact);
+            losses.broken = model.break_bonds(view, scene_.alive_of(g));
+            if (losses.broken > 0) {
+                losses.released = released(g, view, intact);
                 mark_torn(g);
             }
         }
-        model.add_internal_forces(view, zeroed(scene_.arrays.internal, g));
+        const std::span<Vec<Dim>> f = zeroed(scene_.arrays.internal, g);
+        if constexpr (std::is_same_v<Model, Correspondence<Dim>>) {
+            if (group.plastic) {
+                losses.plastic = model.flow(view, scene_.plastic_of(g), f);
+                return losses;
+            }
+        }
+        model.add_internal_forces(view, f);
         if (group.damped) model.add_damping_forces(view, zeroed(scene_.arrays.damping, g));
-        return broken;
+        return losses;
     }
 
     GrainBatch<Dim> gather(const ForceTask& task, std::vector<Vec<Dim>>& forces) const {
@@ -102,41 +111,41 @@ class TaskForces {
     }
 
     template <class Model>
-    Broken compute_batch(const ForceTask& task, const MaterialGroup<Dim>& group, const Model& model) const {
+    Losses compute_batch(const ForceTask& task, const MaterialGroup<Dim>& group, const Model& model) const {
         const GrainBatch<Dim> batch = gather(task, scene_.arrays.internal);
         const std::span<std::uint8_t> alive = scene_.alive_of(task.grain[0]);
-        const Broken broken = count(task, model.add_batch_forces(batch, alive), batch, alive);
+        const Losses losses = count(task, model.add_batch_forces(batch, alive), batch, alive);
         if (group.damped) model.add_batch_damping(gather(task, scene_.arrays.damping), alive);
-        return broken;
+        return losses;
     }
 
-    Broken compute_union(const ForceTask& task, const MaterialGroup<Dim>& group,
+    Losses compute_union(const ForceTask& task, const MaterialGroup<Dim>& group,
                          const UnionBatch<Dim>& forces) const {
         const GrainBatch<Dim> batch = gather(task, scene_.arrays.internal);
         const std::span<std::uint8_t> alive = scene_.alive_of(task.grain[0]);
-        const Broken broken = count(task, forces.add_elastic_forces(batch, alive), batch, alive);
+        const Losses losses = count(task, forces.add_elastic_forces(batch, alive), batch, alive);
         if (group.damped) forces.add_viscous_forces(gather(task, scene_.arrays.damping), alive);
-        return broken;
+        return losses;
     }
 
-    Broken count(const ForceTask& task, const BrokenBonds& torn, const GrainBatch<Dim>& batch,
+    Losses count(const ForceTask& task, const BrokenBonds& torn, const GrainBatch<Dim>& batch,
                  std::span<const std::uint8_t> alive) const {
-        Broken broken;
-        if (torn.bond.empty()) return broken;
+        Losses losses;
+        if (torn.bond.empty()) return losses;
         thread_local std::vector<std::uint8_t> intact;
         intact.assign(alive.begin(), alive.end());
         unsigned lanes = 0;
         for (std::size_t k = 0; k < torn.bond.size(); ++k) {
             intact[static_cast<std::size_t>(torn.bond[k])] |= torn.lanes[k];
             lanes |= torn.lanes[k];
-            broken.count += __builtin_popcount(torn.lanes[k]);
+            losses.broken += __builtin_popcount(torn.lanes[k]);
         }
         for (int lane = 0; lane < batch.size; ++lane)
             if ((lanes >> lane & 1U) != 0) {
-                broken.released += released(task.grain[lane], batch.grain[lane], intact);
+                losses.released += released(task.grain[lane], batch.grain[lane], intact);
                 mark_torn(task.grain[lane]);
             }
-        return broken;
+        return losses;
     }
 
     Scene<Dim>& scene_;
@@ -148,11 +157,12 @@ class TaskForces {
 template <int Dim>
 void compute_internal_forces(Scene<Dim>& scene, StepContext<Dim>& now) {
     const TaskForces<Dim> forces(scene, now.part_done() * now.dt);
-    const Broken broken = parallel::sum(
-        scene.force_tasks.size(), Broken{},
+    const Losses losses = parallel::sum(
+        scene.force_tasks.size(), Losses{},
         [&](std::size_t i) { return forces.compute(scene.force_tasks[i]); }, 1);
-    now.newly_broken += broken.count;
-    now.ledger.past.fracture += broken.released;
+    now.newly_broken += losses.broken;
+    now.ledger.past.fracture += losses.released;
+    now.ledger.past.plastic += losses.plastic;
 }
 
 template void compute_internal_forces<2>(Scene<2>&, StepContext<2>&);

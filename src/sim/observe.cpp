@@ -90,11 +90,12 @@ HistoryRow Observer<Dim>::history(const Scene<Dim>& scene, const StepContext<Dim
     e.friction = 0.0 - past.friction - part * here.friction;
     e.contact_loss = 0.0 - past.normal - part * here.normal;
     e.fracture = past.fracture;
+    e.plastic = past.plastic;
     e.transfer_loss = past.transfer + part * here.transfer;
     e.external_work = past.load + (now.first ? 0.0 : now.ledger.load_half) + past.constraint +
                       part * here.constraint + past.wall + part * here.wall;
     const double stored = e.kinetic + e.elastic + e.contact_elastic + e.gravity;
-    const double lost = e.damping + e.friction + e.contact_loss + e.fracture + e.transfer_loss;
+    const double lost = e.damping + e.friction + e.contact_loss + e.fracture + e.plastic + e.transfer_loss;
     const double total = stored + lost - e.external_work;
     if (!started_) start_energy_ = total;
     started_ = true;
@@ -201,6 +202,9 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
     const bool breakable = std::any_of(scene.groups.begin(), scene.groups.end(),
                                        [](const auto& group) { return group.breakable; });
     frame.damage_z.resize(breakable ? n : 0);
+    frame.plastic_strain.resize(scene.plastic.size());
+    std::transform(scene.plastic.begin(), scene.plastic.end(), frame.plastic_strain.begin(),
+                   [](const auto& strain) { return static_cast<float>(strain.alpha); });
     frame.stress.resize(n * n_components);
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;

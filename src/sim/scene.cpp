@@ -164,13 +164,15 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
         const Shape<Dim>& shape = *scene.shapes[shape_index];
         if (previous != std::pair{shape_index, material_index}) {
             previous = {shape_index, material_index};
-            const bool batched = makes_batches(deck.compute, group_size[previous]);
+            const bool batched = material.model != ForceModel::correspondence &&
+                                 makes_batches(deck.compute, group_size[previous]);
             MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute, batched))};
             group.batched = batched;
             group.first_grain = static_cast<int>(scene.grains.size());
             group.bond_damping = material.bond_damping;
             group.damped = material.bond_damping > 0.0;
             group.breakable = material.can_break();
+            group.plastic = material.can_yield();
             group.density = material.density;
             scene.groups.push_back(std::move(group));
         }
@@ -405,13 +407,21 @@ GrainView<Dim> Scene<Dim>::view(int grain) const {
         if (all.empty()) return BondBits();
         return BondBits({all.data() + bytes.begin, bytes.count}, bytes.bit, bytes.place);
     };
-    return {grains[grain].scale,
-            {particles.x.data() + first, count},
-            {particles.v.data() + first, count},
-            bits(alive),
-            bits(whole),
-            bits(kept),
-            grains[grain].strength};
+    return {
+        grains[grain].scale,
+        {particles.x.data() + first, count},
+        {particles.v.data() + first, count},
+        bits(alive),
+        bits(whole),
+        bits(kept),
+        grains[grain].strength,
+        plastic.empty() ? std::span<const PlasticStrain<Dim>>() : std::span(plastic).subspan(first, count)};
+}
+
+template <int Dim>
+std::span<PlasticStrain<Dim>> Scene<Dim>::plastic_of(int grain) {
+    return std::span(plastic).subspan(static_cast<std::size_t>(grains[grain].first),
+                                      static_cast<std::size_t>(grains[grain].count));
 }
 
 template <int Dim>
@@ -503,6 +513,9 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     scene->x_start = scene->particles.x;
     const std::size_t n = scene->particles.x.size();
     scene->particles.v.assign(n, Vec<Dim>::Zero());
+    if (std::any_of(scene->groups.begin(), scene->groups.end(),
+                    [](const auto& group) { return group.plastic; }))
+        scene->plastic.resize(n);
     StepArrays<Dim>& arrays = scene->arrays;
     arrays.internal.resize(n);
     arrays.v_before.resize(n);

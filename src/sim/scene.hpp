@@ -25,6 +25,7 @@ struct MaterialGroup {
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
     bool damped = false;
     bool breakable = false;     ///< bonds may break, or are missing from the start
+    bool plastic = false;       ///< has an entry a particle in Scene::plastic
     bool batched = false;       ///< forces by batches of eight of its own, in the order of the grains
     double bond_damping = 0.0;  ///< [s]
     double density = 0.0;       ///< [kg/m^3]
@@ -83,8 +84,9 @@ struct Scene {
     std::vector<Grain<Dim>> grains;      ///< sorted by group; Grain::id is the number in the deck
     std::vector<int> grain_of_id;        ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
-    std::vector<Vec<Dim>> x_start;  ///< positions as placed [m]
-    std::int64_t n_cut = 0;         ///< bonds that cracks cross at the start
+    std::vector<Vec<Dim>> x_start;            ///< positions as placed [m]
+    std::int64_t n_cut = 0;                   ///< bonds that cracks cross at the start
+    std::vector<PlasticStrain<Dim>> plastic;  ///< [n] as of the last force; empty: nothing can yield
     /// Bonds of breakable grains. A grain has a bit in each of its bytes; those of a batch share the bytes.
     std::vector<std::uint8_t> alive;
     std::vector<std::uint8_t> whole;    ///< `alive` as the cracks of the start left it; empty: no cracks
@@ -115,6 +117,7 @@ struct Scene {
 
     GrainView<Dim> view(int grain) const;
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
+    std::span<PlasticStrain<Dim>> plastic_of(int grain);
     const MaterialGroup<Dim>& group_of(int grain) const;
     std::vector<BrokenBond> broken_bonds(int grain) const;  ///< ascending
     bool moves_with_grid() const;                           ///< positions move with StepArrays::drift

@@ -263,6 +263,7 @@ typename Ledger<Dim>::Entry& Ledger<Dim>::Entry::operator+=(const Entry& other) 
     friction += other.friction;
     wall += other.wall;
     fracture += other.fracture;
+    plastic += other.plastic;
     transfer += other.transfer;
     impulse += other.impulse;
     moment += other.moment;

@@ -27,7 +27,7 @@ template <int Dim>
 struct Ledger {
     struct Entry {
         double damping = 0, load = 0, constraint = 0, normal = 0, friction = 0, wall = 0, fracture = 0,
-               transfer = 0;
+               plastic = 0, transfer = 0;
         Vec<Dim> impulse = Vec<Dim>::Zero();   ///< from outside [N s]
         Spin<Dim> moment = Spin<Dim>::Zero();  ///< about the origin [N m s]
         Entry& operator+=(const Entry& other);

@@ -138,7 +138,7 @@ class ComparisonCharts {
         };
         add("energy lost, all accounts", energy_lost);
         for (const char* account :
-             {"friction", "contact_loss", "damping", "fracture", "transfer_loss", "residual"})
+             {"friction", "contact_loss", "damping", "fracture", "plastic", "transfer_loss", "residual"})
             add(account, [&](const Columns& history) { return *history.find(account); });
         save(charts, 3, "energy.png");
     }

@@ -17,7 +17,8 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr double momentum_round_off = 1e-12, residual_round_off = 1e-12, small_part = 0.02;
 constexpr std::size_t most_told = 8;
-constexpr const char* losses[] = {"damping", "friction", "contact_loss", "fracture", "transfer_loss"};
+constexpr const char* losses[] = {"damping",  "friction", "contact_loss",
+                                  "fracture", "plastic",  "transfer_loss"};
 constexpr std::array<const char*, 3> axes = {"x", "y", "z"}, forces = {"fx", "fy", "fz"};
 
 double median(std::vector<double> values) {

@@ -54,6 +54,14 @@ TEST_CASE("Fields: the stretch over the critical one, where there is one") {
     CHECK(value("damage_z", frame) == 1.5);
 }
 
+TEST_CASE("Fields: plastic strain, where something can yield") {
+    Frame frame = make_frame({0, 0, 0, 0});
+    CHECK_THROWS_WITH_AS(value("plastic_strain", frame),
+                         doctest::Contains("no material of this run can yield"), InputError);
+    frame.plastic_strain = {0.25};
+    CHECK(value("plastic_strain", frame) == 0.25);
+}
+
 TEST_CASE("Fields: von Mises stress of tension, shear and pressure") {
     const auto near = [](double expected) { return doctest::Approx(expected).epsilon(1e-14); };
     CHECK(value("von_mises", make_frame({7, 0, 0, 0})) == near(7.0));

@@ -61,6 +61,7 @@ inline Frame make_sample_frame(int dimension, int number) {
         frame.damage.push_back(static_cast<float>(p % 7) / 7.0F);
         if (dimension == 3) {
             frame.damage_z.push_back(static_cast<float>(p % 11) / 5.0F);
+            frame.plastic_strain.push_back(static_cast<float>(p % 5) / 5.0F);
             frame.fragment.push_back(static_cast<std::int32_t>(p % 7));
         }
         for (int c = 0; c < (dimension == 2 ? 4 : 6); ++c)

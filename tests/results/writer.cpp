@@ -73,6 +73,8 @@ TEST_CASE("FrameFileWriter: frames are read back bit by bit") {
             CHECK(read.damage_z == wrote.damage_z);
             CHECK(read.fragment == wrote.fragment);
             CHECK(read.damage_z.empty() == (dimension == 2));
+            CHECK(read.plastic_strain == wrote.plastic_strain);
+            CHECK(read.plastic_strain.empty() == (dimension == 2));
             CHECK(read.stress == wrote.stress);
             CHECK(read.grain == wrote.grain);
             CHECK(read.volume == wrote.volume);
@@ -170,6 +172,9 @@ TEST_CASE("FrameFileWriter: frames that do not fit are refused") {
     frame = make_sample_frame(2, 1);
     frame.damage_z.assign(frame.n(), 0.5F);
     CHECK_THROWS_AS(writer.add(frame), std::invalid_argument);
+    frame = make_sample_frame(2, 1);
+    frame.plastic_strain.assign(frame.n(), 0.5F);
+    CHECK_THROWS_AS(writer.add(frame), std::invalid_argument);
     writer.add(make_sample_frame(2, 1));
     writer.close();
     CHECK(FrameFileReader(scratch.path("results.h5")).n_frames() == 2);
@@ -179,8 +184,9 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
     const ScratchDirectory scratch;
     for (const int dimension : {2, 3}) {
         ResultWriter writer({.directory = scratch.path("run"), .dimension = dimension, .fragments = true});
-        HistoryRow history{.time = 0.1,
-                           .energy = {.kinetic = 1.0 / 3.0, .residual = -1e-300, .throughput = 2}};
+        HistoryRow history{
+            .time = 0.1,
+            .energy = {.kinetic = 1.0 / 3.0, .plastic = 3, .residual = -1e-300, .throughput = 2}};
         history.momentum[0] = 4, history.angular_momentum[2] = 5;
         history.broken_bonds = 6, history.fragments = 7, history.debris = 8;
         writer.add_history(history);
@@ -205,12 +211,12 @@ TEST_CASE("ResultWriter: tables have the documented columns and exact numbers") 
         const bool plane = dimension == 2;
         CHECK(read_text(scratch.path("run/history.csv")) ==
               std::string("time,kinetic,elastic,contact_elastic,gravity,damping,friction,contact_loss,"
-                          "fracture,transfer_loss,"
+                          "fracture,plastic,transfer_loss,"
                           "external_work,residual,throughput,") +
                   (plane ? "momentum_x,momentum_y,angular_momentum,broken_bonds,fragments,debris\n"
                          : "momentum_x,momentum_y,momentum_z,angular_momentum_x,angular_momentum_y,"
                            "angular_momentum_z,broken_bonds,fragments,debris\n") +
-                  "0.1,0.3333333333333333,0,0,0,0,0,0,0,0,0,-1e-300,2," +
+                  "0.1,0.3333333333333333,0,0,0,0,0,0,0,3,0,0,-1e-300,2," +
                   (plane ? "4,0,5,6,7,8\n" : "4,0,0,0,0,5,6,7,8\n"));
         CHECK(
             read_text(scratch.path("run/fragments.csv")) ==

@@ -105,6 +105,13 @@ TEST_CASE("Resume: killed runs end with the same bits and files, breaking grains
     check_killed({unequal_deck, often, 2}, SIGKILL, {10, 45});
 }
 
+TEST_CASE("Resume: grains that yield") {
+    const std::string plastic = replaced(unequal_deck, "bond_damping: 0.1 ms, critical_stretch: 0.03",
+                                         "model: correspondence, yield_stress: 20 kPa");
+    check_killed({plastic, often, 1}, SIGKILL, {0, 60});
+    check_killed({plastic, often, 2}, SIGKILL, {30});
+}
+
 TEST_CASE("Resume: contact between nodes, sticking, slipping and through cracks") {
     std::vector<std::string> pairs = often;
     pairs.emplace_back("contact.method=node_pair");
