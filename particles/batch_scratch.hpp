@@ -40,7 +40,7 @@ template <int Dim, class LimitOf>
 void set_break_limits(BatchScratch& scratch, BatchState& state, const GrainBatch<Dim>& batch,
                       std::size_t n_bonds, LimitOf&& limit_of) {
     const BreakLimit& first = limit_of(0);
-    if (state.alive == nullptr || !first.exists()) return;
+    if (state.alive == nullptr || !first.bounds_stretch()) return;
     for (int lane = 0; lane < batch_lanes; ++lane) {
         const double scale = batch.grain[lane].scale, strength = batch.grain[lane].strength;
         const bool own = lane < batch.size;  // an empty lane owns no bits that could break

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "grid/error.hpp"
+#include "particles/bond_energy.hpp"
 #include "particles/stable_step.hpp"
 #include "particles/strain.hpp"
 
@@ -73,7 +74,7 @@ double BondNetwork<Dim>::elastic_energy(const GrainView<Dim>& grain) const {
 
 template <int Dim>
 int BondNetwork<Dim>::break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const {
-    if (!limit_.exists()) return 0;
+    if (!limit_.bounds_stretch()) return 0;
     const double up_to = grain.scale * limit_.longest(grain.scale, grain.strength);
     const double down_to = grain.scale * limit_.shortest(grain.scale, grain.strength);
     int n_broken = 0;
@@ -88,6 +89,12 @@ int BondNetwork<Dim>::break_bonds(const GrainView<Dim>& grain, std::span<std::ui
             ++n_broken;
         }
     return n_broken;
+}
+
+template <int Dim>
+int BondNetwork<Dim>::break_by_energy(const GrainView<Dim>& grain, std::span<BondWork> works,
+                                      std::span<std::uint8_t> alive) const {
+    return quern::break_by_energy(bonds_, stiffness_, limit_, grain, works, alive);
 }
 
 template <int Dim>
@@ -107,13 +114,17 @@ template <int Dim>
 void BondNetwork<Dim>::compute_relative_stretch(const GrainView<Dim>& grain,
                                                 std::span<double> stretch) const {
     std::fill(stretch.begin(), stretch.end(), 0.0);
+    const double critical = limit_.stretch_of(grain.scale, grain.strength);
     for (int i = 0; i < bonds_.n_nodes(); ++i)
         for (int b = bonds_.first[i]; b < bonds_.first[i + 1]; ++b) {
             if (!was_whole(grain, b) || never_breaks(grain, b)) continue;
             const int j = bonds_.partner[b];
             double s = bond_vector(grain, i, j).norm() / bonds_.length[b] - 1.0;
             if (limit_.in_compression) s = std::abs(s);
-            s /= limit_.stretch_of(grain.scale, grain.strength);
+            s /= critical;
+            if (!grain.works.empty() && is_alive(grain, b) && s > 0.0)
+                s = std::sqrt(std::max(0.0, grain.works[b].work) /
+                              critical_work(stiffness_.bond[b], bonds_.length[b], critical));
             stretch[i] = std::max(stretch[i], s);
             stretch[j] = std::max(stretch[j], s);
         }

@@ -59,13 +59,18 @@ class BondNetwork {
     /// `break_limit` and the bond is none of `kept`; never sets it. Number newly broken.
     int break_bonds(const GrainView<Dim>& grain, std::span<std::uint8_t> alive) const;
 
+    /// The same where BreakLimit::by_work, by the law of bond_energy.hpp; `alive`: the bytes of grain.alive.
+    int break_by_energy(const GrainView<Dim>& grain, std::span<BondWork> works,
+                        std::span<std::uint8_t> alive) const;
+
     /// damage [n] = volume of the broken part of the family over that of the whole family, in [0, 1]; family:
     /// what the cracks of the start have left of it, so that a notch is no damage.
     void compute_damage(const GrainView<Dim>& grain, std::span<double> damage) const;
 
     /// stretch [n] = max_j s_ij/s0 over all bonds of a node, broken ones included, those that cracks of the
     /// start cross and those that never break left out; s = |y|/(s xi) - 1 where bonds break in tension only,
-    /// its absolute value where they break in both directions. From 1 up the bond that has it is broken.
+    /// its absolute value where they break in both directions; where they break by energy, the root of
+    /// an intact bond's work over the critical one. From 1 up the bond that has it is broken.
     /// Source: Z of Jha et al., J. Mech. Phys. Solids 151 (2021) 104376, eq 14, which takes |u_j - u_i|/xi
     /// for s and so grows when a grain turns; their code takes |s|.
     void compute_relative_stretch(const GrainView<Dim>& grain, std::span<double> stretch) const;

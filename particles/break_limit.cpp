@@ -30,11 +30,15 @@ double ratio_of_sums(const Bonds<Dim>& bonds) {
 
 template <int Dim>
 double critical_stretch(const Material& material, double horizon, double ratio) {
-    const double K = material.bulk_modulus, G = material.shear_modulus, Gc = material.fracture_energy;
+    const bool as_springs = material.breaks_by == BreaksBy::energy;
+    const double G = material.shear_modulus, Gc = material.fracture_energy;
+    const double K = as_springs ? 5.0 / 3.0 * G : material.bulk_modulus;
     if (material.critical_stretch_formula == StretchFormula::peridem)
         return std::sqrt(Gc / ((3.0 * G + std::pow(0.75, 4) * (K - 5.0 / 3.0 * G)) * horizon));
     if constexpr (Dim == 3) return std::sqrt(4.0 / 9.0 * Gc / K * ratio);
-    const double K2 = uses_space_constants<2>(material) ? 9.0 / 4.0 * K : dilatational_modulus<2>(material);
+    const double K2 = uses_space_constants<2>(material) ? 9.0 / 4.0 * K
+                      : as_springs                      ? 2.0 * G
+                                                        : dilatational_modulus<2>(material);
     return std::sqrt(std::numbers::pi / 4.0 * Gc / K2 * ratio);
 }
 
@@ -45,6 +49,7 @@ BreakLimit make_limit(const Material& material, double horizon, double ratio) {
     limit.stretch =
         limit.by_energy ? critical_stretch<Dim>(material, horizon, ratio) : material.critical_stretch;
     limit.in_compression = material.breaks_in == BreaksIn::both;
+    limit.by_work = material.breaks_by == BreaksBy::energy && material.model != ForceModel::bond_based;
     return limit;
 }
 

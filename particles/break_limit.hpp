@@ -35,6 +35,10 @@ namespace quern {
 /// ratio of springs, where the LPS has no energy of dilatation. d is that of the grain, s times that of its
 /// shape, so that s0 falls as s^(-1/2) and grains of every size have Gc.
 ///
+/// BreaksBy::energy takes G alone: 5 G/3 for K, 2 G for K2, 15 G/4 with the constants of space in the plane.
+/// The stretch is then that of springs of the same G and sets the work at which a bond breaks
+/// (bond_energy.hpp).
+///
 /// A grain with a strength f (weibull.hpp) breaks at f s0.
 ///
 /// Sources: Silling & Askari, Comput. Struct. 83 (2005) 1526, eqs 26, 27 (w = 1/r; other w and the plane by
@@ -45,8 +49,9 @@ struct BreakLimit {
     double stretch = std::numeric_limits<double>::infinity();  ///< s0 of a grain of scale 1
     bool by_energy = false;                                    ///< s0 falls as scale^(-1/2)
     bool in_compression = false;
+    bool by_work = false;  ///< s0 is no bound of stretches, but sets the work that breaks (bond_energy.hpp)
 
-    bool exists() const { return std::isfinite(stretch); }
+    bool bounds_stretch() const { return std::isfinite(stretch) && !by_work; }
     double stretch_of(double scale, double strength = 1.0) const {
         return strength * (by_energy ? stretch / std::sqrt(scale) : stretch);
     }

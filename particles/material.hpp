@@ -26,6 +26,7 @@ enum class SurfaceCorrection { none, volume };
 enum class VolumeCorrection { none, linear };
 enum class HorizonRim { included, excluded };  ///< bonds exactly as long as the horizon
 enum class BreaksIn { tension, both };
+enum class BreaksBy { stretch, energy };
 enum class StretchFormula { energy_balance, peridem };
 
 /// Strength that differs from grain to grain, see weibull.hpp.
@@ -59,6 +60,7 @@ struct Material {
     double fracture_energy = 0.0;  ///< Gc, from which the critical stretch follows; 0: it is given [J/m^2]
     StretchFormula critical_stretch_formula = StretchFormula::energy_balance;
     BreaksIn breaks_in = BreaksIn::tension;
+    BreaksBy breaks_by = BreaksBy::stretch;   ///< energy: at its work (bond_energy.hpp)
     std::optional<StrengthScatter> strength;  ///< none: all grains alike
 
     double horizon_of(double dx) const { return horizon > 0.0 ? horizon : horizon_ratio * dx; }  ///< [m]

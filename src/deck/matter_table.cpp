@@ -176,6 +176,10 @@ Table<MaterialInput> material_table() {
     t.word("breaks_in", &T::breaks_in, {"tension", "both"},
            "Bonds break when stretched, or when compressed as well; default of peridem: both")
         .only_for(bond_models);
+    t.word("breaks_by", &T::breaks_by, {"stretch", "energy"},
+           "Bonds break at the critical stretch, or where the work done on them is their share of "
+           "fracture_energy")
+        .only_for(bond_models);
     t.section("strength", static_cast<std::optional<StrengthScatter> T::*>(&T::strength), strength_table(),
               "Critical stretch that differs from grain to grain")
         .only_for(bond_models);

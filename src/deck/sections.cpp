@@ -77,6 +77,14 @@ void finish_material(MaterialInput& material, const Cursor& at, const Context& n
         throw InputError(at.where("critical_stretch_formula"),
                          "critical_stretch_formula without fracture_energy", "fracture_energy beside it");
     }
+    if (material.breaks_by == BreaksBy::energy) {
+        const bool peridem = material.critical_stretch_formula == StretchFormula::peridem;
+        if (!at.has("fracture_energy") || peridem)
+            throw InputError(
+                at.where("breaks_by"),
+                peridem ? "energy with critical_stretch_formula: peridem" : "energy without fracture_energy",
+                peridem ? "critical_stretch_formula: energy_balance beside it" : "fracture_energy beside it");
+    }
     if (material.strength && !material.can_break()) {
         throw InputError(at.where("strength"), "strength of a material that never breaks",
                          "critical_stretch or fracture_energy beside it");

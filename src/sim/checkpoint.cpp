@@ -70,6 +70,7 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
     checkpoint.array("x start", std::span(scene.x_start));
     checkpoint.array("bonds alive", std::span(scene.alive));
     checkpoint.array("plastic strain", std::span(scene.plastic));
+    if (!scene.works.empty()) checkpoint.array("works of bonds", std::span(scene.works));
     for (Wall<Dim>& wall : scene.walls) {
         checkpoint.value("wall point", wall.point);
         checkpoint.value("wall velocity", wall.velocity);

@@ -33,10 +33,17 @@ void place_bits(Scene<Dim>& scene, const ForceTask& task) {
         const int n_bonds = std::visit([](const auto& model) { return model.n_bonds(); }, group.model);
         scene.alive.resize(begin + static_cast<std::size_t>(n_bonds), 0xff);
     }
-    for (int lane = 0; lane < task.size; ++lane)
-        scene.bond_bytes[static_cast<std::size_t>(task.grain[lane])] = {
+    for (int lane = 0; lane < task.size; ++lane) {
+        const int g = task.grain[lane];
+        scene.bond_bytes[static_cast<std::size_t>(g)] = {
             begin, scene.alive.size() - begin, lane,
-            task.union_batch >= 0 ? scene.unions[task.union_batch].places(lane).data() : nullptr};
+            task.union_batch >= 0 ? scene.unions[task.union_batch].places(lane).data() : nullptr,
+            scene.works.size()};
+        if (!group.breaks_by_work) continue;
+        const int n_bonds =
+            std::visit([](const auto& model) { return model.n_bonds(); }, scene.group_of(g).model);
+        scene.works.resize(scene.works.size() + static_cast<std::size_t>(n_bonds));
+    }
 }
 
 /// Lattice grains outside of batches, those alike next to each other: by material, cells along the axes,

@@ -40,13 +40,20 @@ class TaskForces {
 
     Losses compute(const ForceTask& task) const {
         const MaterialGroup<Dim>& group = scene_.group_of(task.grain[0]);
-        if (task.union_batch >= 0) return compute_union(task, group, scene_.unions[task.union_batch]);
-        return std::visit(
+        Losses losses;
+        if (group.breaks_by_work && !task.alone)
+            for (int lane = 0; lane < task.size; ++lane) losses += break_by_energy(task.grain[lane]);
+        if (task.union_batch >= 0) {
+            losses += compute_union(task, group, scene_.unions[task.union_batch]);
+            return losses;
+        }
+        losses += std::visit(
             [&](const auto& model) {
                 return task.alone ? compute_grain(task.grain[0], group, model)
                                   : compute_batch(task, group, model);
             },
             group.model);
+        return losses;
     }
 
   private:
@@ -75,11 +82,31 @@ class TaskForces {
         return energy_of(g, before) - energy_of(g, view);
     }
 
+    /// Bonds of a grain that have got their work, before its forces.
+    Losses break_by_energy(int g) const {
+        const GrainView<Dim> view = scene_.view(g);
+        thread_local std::vector<std::uint8_t> intact;
+        intact.assign(view.alive.bytes().begin(), view.alive.bytes().end());
+        Losses losses;
+        losses.broken = std::visit(
+            [&](const auto& model) {
+                return model.break_by_energy(view, scene_.works_of(g), scene_.alive_of(g));
+            },
+            scene_.group_of(g).model);
+        if (losses.broken > 0) {
+            losses.released = released(g, view, intact);
+            mark_torn(g);
+        }
+        return losses;
+    }
+
     template <class Model>
     Losses compute_grain(int g, const MaterialGroup<Dim>& group, const Model& model) const {
         const GrainView<Dim> view = scene_.view(g);
         Losses losses;
-        if (group.breakable) {
+        if (group.breaks_by_work) {
+            losses = break_by_energy(g);
+        } else if (group.breakable) {
             thread_local std::vector<std::uint8_t> intact;
             intact.assign(view.alive.bytes().begin(), view.alive.bytes().end());
             losses.broken = model.break_bonds(view, scene_.alive_of(g));

@@ -173,6 +173,8 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
             group.damped = material.bond_damping > 0.0;
             group.breakable = material.can_break();
             group.plastic = material.can_yield();
+            group.breaks_by_work =
+                std::visit([](const auto& model) { return model.break_limit().by_work; }, group.model);
             group.density = material.density;
             scene.groups.push_back(std::move(group));
         }
@@ -396,6 +398,17 @@ void weigh_held_particles(Scene<Dim>& scene) {
     }
 }
 
+/// Works of the bonds of a grain.
+template <int Dim, class Works>
+auto works_in(const Scene<Dim>& scene, Works& works, int g) {
+    using Span = std::span<std::remove_reference_t<decltype(works[0])>>;
+    if (works.empty() || !scene.group_of(g).breaks_by_work) return Span();
+    const int n_bonds =
+        std::visit([](const auto& model) { return model.n_bonds(); }, scene.group_of(g).model);
+    return Span(works.data() + scene.bond_bytes[static_cast<std::size_t>(g)].first_work,
+                static_cast<std::size_t>(n_bonds));
+}
+
 }  // namespace
 
 template <int Dim>
@@ -415,7 +428,13 @@ GrainView<Dim> Scene<Dim>::view(int grain) const {
         bits(whole),
         bits(kept),
         grains[grain].strength,
+        works_in(*this, works, grain),
         plastic.empty() ? std::span<const PlasticStrain<Dim>>() : std::span(plastic).subspan(first, count)};
+}
+
+template <int Dim>
+std::span<BondWork> Scene<Dim>::works_of(int grain) {
+    return works_in(*this, works, grain);
 }
 
 template <int Dim>

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "contact/contact_method.hpp"
+#include "particles/bond_energy.hpp"
 #include "particles/grains.hpp"
 #include "particles/peridynamic_model.hpp"
 #include "particles/union_batch.hpp"
@@ -24,11 +25,12 @@ struct MaterialGroup {
     PeridynamicModel<Dim> model;
     int first_grain = 0, last_grain = 0;  ///< range [first, last)
     bool damped = false;
-    bool breakable = false;     ///< bonds may break, or are missing from the start
-    bool plastic = false;       ///< has an entry a particle in Scene::plastic
-    bool batched = false;       ///< forces by batches of eight of its own, in the order of the grains
-    double bond_damping = 0.0;  ///< [s]
-    double density = 0.0;       ///< [kg/m^3]
+    bool breakable = false;       ///< bonds may break, or are missing from the start
+    bool plastic = false;         ///< has an entry a particle in Scene::plastic
+    bool breaks_by_work = false;  ///< by the law of particles/bond_energy.hpp
+    bool batched = false;         ///< forces by batches of eight of its own, in the order of the grains
+    double bond_damping = 0.0;    ///< [s]
+    double density = 0.0;         ///< [kg/m^3]
 };
 
 /// Body force on some particles.
@@ -62,6 +64,7 @@ struct BondBytes {
     std::size_t begin = 0, count = 0;
     int bit = 0;
     const int* place = nullptr;  ///< [n_bonds] byte of each bond; null: in their order
+    std::size_t first_work = 0;  ///< into Scene::works
 };
 
 /// Grains whose bond forces are evaluated at once: one, a batch of one shape, or a union.
@@ -92,6 +95,7 @@ struct Scene {
     std::vector<std::uint8_t> whole;    ///< `alive` as the cracks of the start left it; empty: no cracks
     std::vector<std::uint8_t> kept;     ///< bits of bonds that never break, as `alive`; empty: none
     std::vector<BondBytes> bond_bytes;  ///< [n_grains] into `alive`
+    std::vector<BondWork> works;  ///< of the bonds that break by energy, grain by grain; empty: none does
     std::int64_t n_bonds = 0;
 
     std::vector<Wall<Dim>> walls;
@@ -118,6 +122,7 @@ struct Scene {
     GrainView<Dim> view(int grain) const;
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     std::span<PlasticStrain<Dim>> plastic_of(int grain);
+    std::span<BondWork> works_of(int grain);  ///< [n_bonds]; empty: does not break by energy
     const MaterialGroup<Dim>& group_of(int grain) const;
     std::vector<BrokenBond> broken_bonds(int grain) const;  ///< ascending
     bool moves_with_grid() const;                           ///< positions move with StepArrays::drift
