@@ -74,7 +74,12 @@ struct Case {
 
 int body(const ReportOptions& options) {
     std::vector<Case> cases = {{"nu 0"}};
-    if (!options.short_mode) cases.push_back({"nu 0.25", 0.25, {"nu=0.25"}, false});
+    if (!options.short_mode) {
+        cases.push_back({"nu 0.25", 0.25, {"nu=0.25"}, false});
+        for (const double nu : {0.0, 0.25, 0.4})
+            cases.push_back(
+                {fmt::format("nu {}, by energy", nu), nu, {fmt::format("nu={}", nu), "by=energy"}, false});
+    }
     ReportTable table({"nu", "sigma_t", "peak", "ratio", "ratio_of_strains", "on_diameter"});
     ReportChecks checks;
     Chart chart{"Force on the disk", "way of a platen [um]", "2 P/(pi D sigma_t)", {}};

@@ -107,6 +107,7 @@ int body(const ReportOptions& options) {
     if (!options.short_mode) {
         cases.push_back({"horizon 4 dx", 1e-3, 4.015, {}, false});
         cases.push_back({"nu 0.3", 1e-3, 3.015, {"nu=0.3"}, false});
+        cases.push_back({"nu 0.3, by energy", 1e-3, 3.015, {"nu=0.3", "by=energy"}, false});
     }
     ReportTable table({"dx", "m", "angle", "first_angle", "difference", "start", "top_speed"});
     ReportChecks checks;
