@@ -11,7 +11,8 @@ enum class ForceModel {
     lps,
     bond_based,
     peridem,  ///< lps as set by `set_peridem_options`
-    correspondence
+    correspondence,
+    material_points
 };
 enum class PlaneState { strain, stress };
 enum class Constants { plane, three_dimensional };  ///< of lps in 2D

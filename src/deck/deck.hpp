@@ -13,6 +13,7 @@
 
 #include "particles/instructions.hpp"
 #include "particles/material.hpp"
+#include "particles/point_options.hpp"
 #include "src/deck/expression.hpp"
 
 namespace quern {
@@ -286,6 +287,7 @@ struct Deck {
     PrepareDeck prepare;
     TimeDeck time;
     ComputeDeck compute;
+    PointOptions material_points;
     OutputDeck output;
     ObserveDeck observe;
 };

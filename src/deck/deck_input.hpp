@@ -10,7 +10,8 @@ struct MaterialInput : Material {
     std::optional<double> bulk, shear, young, poisson;
 };
 
-inline const std::vector<std::string> material_models = {"lps", "bond_based", "peridem", "correspondence"};
+inline const std::vector<std::string> material_models = {"lps", "bond_based", "peridem", "correspondence",
+                                                         "material_points"};
 
 /// A regular arrangement: counts along the axes, x fastest.
 struct ArrayInput {
@@ -50,6 +51,7 @@ struct DeckInput {
     int dimension = 2;
     TimeDeck time;
     ComputeDeck compute;
+    PointOptions material_points;
     Numbers3 gravity{};
     std::vector<MaterialInput> materials;
     std::vector<ShapeDeck> shapes;

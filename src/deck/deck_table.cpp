@@ -458,6 +458,16 @@ Table<OutputDeck> output_table() {
     return t;
 }
 
+Table<PointOptions> points_table() {
+    using T = PointOptions;
+    Table<T> t;
+    t.word("functions", &T::functions, {"linear", "gimp", "quadratic"},
+           "Shape functions: linear hats, boxes of the size of a point, quadratic B-splines");
+    t.integer("order", &T::order, {1, 10, false, false, false},
+              "Terms of the inverse mass matrix: 1 lumps it and loses spin, more keep it and cost time");
+    return t;
+}
+
 Table<DeckInput> make_deck_table() {
     using T = DeckInput;
     Table<T> t;
@@ -482,6 +492,8 @@ Table<DeckInput> make_deck_table() {
     t.list("no_fail", &T::no_fail, no_fail_table(), "Where bonds never break");
     t.section("prepare", &T::prepare, prepare_table(), "Relaxation before the run");
     t.section("compute", &T::compute, compute_table(), "How forces inside the grains are evaluated");
+    t.section("material_points", &T::material_points, points_table(),
+              "How grains with model: material_points see the grid");
     t.section("output", &T::output, output_table(), "What is written, and how often");
     t.section(
         "observe", &T::observe, observe_table(),

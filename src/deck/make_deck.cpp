@@ -132,6 +132,38 @@ void add_groups(const Deck& deck, std::vector<int>& ids, std::vector<std::string
     groups.clear();
 }
 
+ForceModel model_of(const Deck& deck, const GrainDeck& grain) {
+    return std::find_if(deck.materials.begin(), deck.materials.end(),
+                        [&](const Material& material) { return material.name == grain.material; })
+        ->model;
+}
+
+/// What acts on bonds, or on velocities that the grid would spread, is of no use to material points.
+template <class Target>
+void check_peridynamic(const Deck& deck, const Target& target, const std::string& shape, const char* what) {
+    for (std::size_t i = 0; i < deck.grains.size(); ++i) {
+        const GrainDeck& grain = deck.grains[i];
+        const bool chosen = target.grains.empty() || std::find(target.grains.begin(), target.grains.end(),
+                                                               static_cast<int>(i)) != target.grains.end();
+        if (!chosen || !(shape.empty() || shape == grain.shape)) continue;
+        if (model_of(deck, grain) != ForceModel::material_points) continue;
+        throw InputError(target.place.text(),
+                         fmt::format("{} in grain {}, which is made of material points", what, i),
+                         "peridynamic grains", "choose them by grains, groups or shape");
+    }
+}
+
+void check_points(const Deck& deck) {
+    const bool any = std::any_of(deck.grains.begin(), deck.grains.end(), [&](const GrainDeck& grain) {
+        return model_of(deck, grain) == ForceModel::material_points;
+    });
+    const bool grid =
+        deck.contact.method == ContactMethodKind::grid && deck.contact.rule != ContactRule::none;
+    if (any && grid && deck.contact.coupling == ContactCoupling::flip)
+        throw InputError(place_text(deck.contact.place, "coupling"), "flip with material points", "impulse",
+                         "they are moved by FLIP as they are");
+}
+
 void check_walls(const Deck& deck) {
     for (std::size_t i = 0; i < deck.walls.size(); ++i) {
         check_wall(deck.walls[i], deck.grid, deck.dimension);
@@ -165,6 +197,7 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     deck.prepare.loads.assign(input.prepare.load_entries.begin(), input.prepare.load_entries.end());
     deck.time = input.time;
     deck.compute = input.compute;
+    deck.material_points = input.material_points;
     deck.output = std::move(input.output);
     deck.observe = std::move(input.observe);
     deck.grains = expand_grains(input.grains, deck.shapes, now);
@@ -200,6 +233,12 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     };
     for (CrackDeck& crack : deck.cracks) settle_target(crack);
     for (NoFailDeck& zone : deck.no_fail) settle_target(zone);
+    for (const CrackDeck& crack : deck.cracks) check_peridynamic(deck, crack, crack.shape, "a crack");
+    for (const NoFailDeck& zone : deck.no_fail)
+        check_peridynamic(deck, zone, zone.shape, "a zone without failure");
+    for (const ConstraintDeck& held : deck.constraints)
+        check_peridynamic(deck, held, {}, "a prescribed velocity");
+    check_points(deck);
     settle(deck.output.track, deck.output.groups, at.where("output.track"));
     return deck;
 }

@@ -77,7 +77,7 @@ Table<StrengthScatter> strength_table() {
 }
 
 const std::vector<std::string> bond_models = {"lps", "bond_based", "peridem"};
-const std::vector<std::string> plastic_models = {"correspondence"};
+const std::vector<std::string> plastic_models = {"correspondence", "material_points"};
 
 /// A number of which another key is the alternative: written where it is the one in use.
 Field<MaterialInput>& add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member,
@@ -103,7 +103,7 @@ Table<MaterialInput> material_table() {
                     .words = material_models,
                     .about =
                         "Internal force: linear peridynamic solid, bond-based, lps with the options "
-                        "of PeriDEM for defaults, or stabilised correspondence"};
+                        "of PeriDEM for defaults, stabilised correspondence, or material points"};
     t.add(
         model,
         [model](T& m, const Cursor& at, const Context& now) {

@@ -47,10 +47,12 @@ void check_bond_based(const MaterialInput& m, const Cursor& at, const Context& n
                      fmt::format("nu = {} {}", stress ? "1/3" : "1/4", state), "model: lps takes any nu");
 }
 
-void check_plastic(const MaterialInput& m, const Cursor& at, const Context& now) {
+void check_continuum(const MaterialInput& m, const Cursor& at, const Context& now) {
     if (now.dimension == 2 && m.plane == PlaneState::stress) {
-        throw InputError(at.where("plane"), "stress with model: correspondence", "plane: strain",
-                         "the thickness of a plastic grain is not solved for");
+        throw InputError(
+            at.where("plane"),
+            fmt::format("stress with model: {}", material_models[static_cast<std::size_t>(m.model)]),
+            "plane: strain", "the thickness of a plastic grain is not solved for");
     }
     if (at.has("hardening_modulus") && !std::isfinite(m.yield_stress)) {
         throw InputError(at.where("hardening_modulus"), "hardening_modulus of a material that never yields",
@@ -70,7 +72,8 @@ void check_alternative(const Cursor& at, const std::string& first, const std::st
 void finish_material(MaterialInput& material, const Cursor& at, const Context& now) {
     complete_moduli(material, at);
     if (material.model == ForceModel::bond_based) check_bond_based(material, at, now);
-    if (material.model == ForceModel::correspondence) check_plastic(material, at, now);
+    if (material.model == ForceModel::correspondence || material.model == ForceModel::material_points)
+        check_continuum(material, at, now);
     check_alternative(at, "horizon_ratio", "horizon");
     check_alternative(at, "critical_stretch", "fracture_energy");
     if (at.has("critical_stretch_formula") && !at.has("fracture_energy")) {

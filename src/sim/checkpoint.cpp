@@ -71,6 +71,7 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
     checkpoint.array("bonds alive", std::span(scene.alive));
     checkpoint.array("plastic strain", std::span(scene.plastic));
     if (!scene.works.empty()) checkpoint.array("works of bonds", std::span(scene.works));
+    if (scene.points) checkpoint.array("points", scene.points->states());
     for (Wall<Dim>& wall : scene.walls) {
         checkpoint.value("wall point", wall.point);
         checkpoint.value("wall velocity", wall.velocity);

@@ -187,6 +187,7 @@ void compute_internal_forces(Scene<Dim>& scene, StepContext<Dim>& now) {
     const Losses losses = parallel::sum(
         scene.force_tasks.size(), Losses{},
         [&](std::size_t i) { return forces.compute(scene.force_tasks[i]); }, 1);
+    if (scene.points) scene.points->compute_forces(scene.particles, scene.arrays.internal);
     now.newly_broken += losses.broken;
     now.ledger.past.fracture += losses.released;
     now.ledger.past.plastic += losses.plastic;

@@ -202,49 +202,73 @@ void make_frame(const Scene<Dim>& scene, const StepContext<Dim>& now, Frame& fra
     const bool breakable = std::any_of(scene.groups.begin(), scene.groups.end(),
                                        [](const auto& group) { return group.breakable; });
     frame.damage_z.resize(breakable ? n : 0);
-    frame.plastic_strain.resize(scene.plastic.size());
+    const bool yields = !scene.plastic.empty() || (scene.points && scene.points->yields());
+    frame.plastic_strain.assign(yields ? n : 0, 0.0F);
     std::transform(scene.plastic.begin(), scene.plastic.end(), frame.plastic_strain.begin(),
                    [](const auto& strain) { return static_cast<float>(strain.alpha); });
     frame.stress.resize(n * n_components);
     frame.grain.resize(n);
     frame.volume = scene.particles.volume;
     frame.fragment = scene.fragments.of_particle;
+    const auto narrow = [](double value) { return static_cast<float>(value); };
+    const auto take_motion = [&](const Grain<Dim>& grain) {
+        for (int i = grain.first; i < grain.first + grain.count; ++i) {
+            const std::size_t p = static_cast<std::size_t>(i);
+            const Vec<Dim> v = velocity_now(scene, now, i);
+            for (std::size_t a = 0; a < d; ++a) {
+                frame.position[p * d + a] = scene.particles.x[p][static_cast<int>(a)];
+                frame.velocity[p * d + a] = narrow(v[static_cast<int>(a)]);
+            }
+            frame.grain[p] = grain.id;
+        }
+    };
     for (const MaterialGroup<Dim>& group : scene.groups)
         std::visit(
             [&](const auto& model) {
-                parallel::for_each(
-                    static_cast<std::size_t>(group.last_grain - group.first_grain), [&](std::size_t i) {
-                        const int g = group.first_grain + static_cast<int>(i);
-                        const Grain<Dim>& grain = scene.grains[g];
-                        const GrainView<Dim> view = scene.view(g);
-                        const std::size_t first = static_cast<std::size_t>(grain.first);
-                        const std::size_t count = static_cast<std::size_t>(grain.count);
-                        thread_local std::vector<double> wide;
-                        wide.assign(n_components * count, 0.0);
-                        const auto narrow = [](double value) { return static_cast<float>(value); };
-                        if (!view.alive.empty()) model.compute_damage(view, {wide.data(), count});
-                        std::transform(wide.begin(), wide.begin() + grain.count,
-                                       frame.damage.begin() + grain.first, narrow);
-                        if (breakable) {
-                            std::fill_n(wide.begin(), count, 0.0);
-                            if (group.breakable) model.compute_relative_stretch(view, {wide.data(), count});
-                            std::transform(wide.begin(), wide.begin() + grain.count,
-                                           frame.damage_z.begin() + grain.first, narrow);
-                        }
-                        model.compute_stress(view, wide);
-                        std::transform(wide.begin(), wide.end(), frame.stress.data() + n_components * first,
-                                       narrow);
-                        for (std::size_t p = first; p < first + count; ++p) {
-                            const Vec<Dim> v = velocity_now(scene, now, static_cast<int>(p));
-                            for (std::size_t a = 0; a < d; ++a) {
-                                frame.position[p * d + a] = scene.particles.x[p][static_cast<int>(a)];
-                                frame.velocity[p * d + a] = narrow(v[static_cast<int>(a)]);
-                            }
-                            frame.grain[p] = grain.id;
-                        }
-                    });
+                parallel::for_each(static_cast<std::size_t>(group.last_grain - group.first_grain),
+                                   [&](std::size_t i) {
+                                       const int g = group.first_grain + static_cast<int>(i);
+                                       const Grain<Dim>& grain = scene.grains[g];
+                                       const GrainView<Dim> view = scene.view(g);
+                                       const std::size_t first = static_cast<std::size_t>(grain.first);
+                                       const std::size_t count = static_cast<std::size_t>(grain.count);
+                                       thread_local std::vector<double> wide;
+                                       wide.assign(n_components * count, 0.0);
+                                       if (!view.alive.empty())
+                                           model.compute_damage(view, {wide.data(), count});
+                                       std::transform(wide.begin(), wide.begin() + grain.count,
+                                                      frame.damage.begin() + grain.first, narrow);
+                                       if (breakable) {
+                                           std::fill_n(wide.begin(), count, 0.0);
+                                           if (group.breakable)
+                                               model.compute_relative_stretch(view, {wide.data(), count});
+                                           std::transform(wide.begin(), wide.begin() + grain.count,
+                                                          frame.damage_z.begin() + grain.first, narrow);
+                                       }
+                                       model.compute_stress(view, wide);
+                                       std::transform(wide.begin(), wide.end(),
+                                                      frame.stress.data() + n_components * first, narrow);
+                                       take_motion(grain);
+                                   });
             },
             group.model);
+    if (!scene.points) return;
+    const std::size_t n_grains = static_cast<std::size_t>(scene.points->n_grains());
+    parallel::for_each(n_grains, [&](std::size_t k) {
+        const Grain<Dim>& grain = scene.grains[scene.grains.size() - n_grains + k];
+        const std::size_t first = static_cast<std::size_t>(grain.first);
+        const std::size_t count = static_cast<std::size_t>(grain.count);
+        thread_local std::vector<double> stress;
+        stress.resize(n_components * count);
+        scene.points->compute_stress(static_cast<int>(k), stress);
+        if (!frame.plastic_strain.empty())
+            scene.points->compute_plastic_strain(static_cast<int>(k),
+                                                 {frame.plastic_strain.data() + first, count});
+        std::transform(stress.begin(), stress.end(), frame.stress.data() + n_components * first, narrow);
+        std::fill_n(frame.damage.begin() + grain.first, grain.count, 0.0F);
+        if (breakable) std::fill_n(frame.damage_z.begin() + grain.first, grain.count, 0.0F);
+        take_motion(grain);
+    });
 }
 
 template <int Dim>

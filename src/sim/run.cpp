@@ -165,6 +165,7 @@ class Run {
         StageTimes& s = now_.stages;
         for (double* seconds : {&s.internal_forces, &s.loads, &s.kick, &s.contact, &s.drift, &s.output})
             checkpoint.value("stage seconds", *seconds);
+        if (scene_->points) checkpoint.value("stage seconds", s.points);
         checkpoint.value("wall seconds", earlier_seconds_);
     }
 
@@ -214,6 +215,7 @@ class Run {
             return;
         std::string text = "grain,strength,critical_stretch\n";
         for (const int g : scene_->grain_of_id) {
+            if (scene_->point_grain(g) >= 0) continue;
             const Grain<Dim>& grain = scene_->grains[g];
             const double stretch = std::visit(
                 [&](const auto& model) {
@@ -400,6 +402,7 @@ class Run {
                            {"contact", s.contact},
                            {"drift", s.drift},
                            {"output", s.output}};
+        if (scene_->points) summary_.stages.insert(summary_.stages.begin() + 4, {"points", s.points});
         const double steps = static_cast<double>(std::max<std::int64_t>(1, now_.step));
         summary_.contact_per_step = {{"nodes", static_cast<double>(now_.contact_nodes) / steps},
                                      {"rows", static_cast<double>(now_.contacts) / steps},

@@ -140,46 +140,65 @@ std::vector<ShapeChoice> make_shapes(const Deck& deck, Scene<Dim>& scene) {
     return choices;
 }
 
-/// Grains in the order of their groups, shape and material; within a group along a curve through space, so
-/// that neighbours share caches.
+/// The group of peridynamic grains of this shape and material.
+template <int Dim>
+MaterialGroup<Dim> make_group(const Deck& deck, const Shape<Dim>& shape, const Material& material,
+                              int n_grains) {
+    const bool batched =
+        material.model != ForceModel::correspondence && makes_batches(deck.compute, n_grains);
+    MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute, batched))};
+    group.batched = batched;
+    group.bond_damping = material.bond_damping;
+    group.damped = material.bond_damping > 0.0;
+    group.breakable = material.can_break();
+    group.plastic = material.can_yield();
+    group.breaks_by_work =
+        std::visit([](const auto& model) { return model.break_limit().by_work; }, group.model);
+    group.density = material.density;
+    return group;
+}
+
+/// A point that is wider than a cell would leave nodes without mass inside its grain.
+void check_point_size(const Deck& deck, const GrainDeck& grain, double side) {
+    if (side <= deck.grid.spacing * (1.0 + 1e-9)) return;
+    throw InputError(
+        grain.place.text(),
+        fmt::format("material points {:.4g} m wide on a grid of {:.4g} m", side, deck.grid.spacing),
+        "points no wider than a cell", "half a cell is usual: shapes.*.spacing, grid.spacing");
+}
+
+/// Grains in the order of their groups, shape and material, those of material points last; within a group
+/// along a curve through space, so that neighbours share caches.
 template <int Dim>
 void place_grains(const Deck& deck, Scene<Dim>& scene) {
     const std::vector<ShapeChoice> choices = make_shapes(deck, scene);
     const int n_grains = static_cast<int>(deck.grains.size());
-    std::vector<std::tuple<int, int, std::uint64_t, int>> order;
+    std::vector<std::tuple<bool, int, int, std::uint64_t, int>> order;
     for (int id = 0; id < n_grains; ++id) {
         const Vec<Dim> in_cells = scene.grid.in_cells(vec<Dim>(deck.grains[id].position));
-        order.emplace_back(choices[id].shape, index_of(deck.materials, deck.grains[id].material),
-                           z_order<Dim>(CartesianGrid<Dim>::cell(in_cells)), id);
+        const int material = index_of(deck.materials, deck.grains[id].material);
+        order.emplace_back(deck.materials[material].model == ForceModel::material_points, choices[id].shape,
+                           material, z_order<Dim>(CartesianGrid<Dim>::cell(in_cells)), id);
     }
     std::sort(order.begin(), order.end());
     scene.grain_of_id.resize(static_cast<std::size_t>(n_grains));
     std::map<std::pair<int, int>, int> group_size;
-    for (const auto& [shape_index, material_index, place, id] : order)
+    for (const auto& [in_points, shape_index, material_index, place, id] : order)
         ++group_size[{shape_index, material_index}];
     std::pair<int, int> previous{-1, -1};
-    for (const auto& [shape_index, material_index, place, id] : order) {
+    for (const auto& [in_points, shape_index, material_index, place, id] : order) {
         const GrainDeck& from = deck.grains[id];
         const Material& material = deck.materials[material_index];
         const Shape<Dim>& shape = *scene.shapes[shape_index];
-        if (previous != std::pair{shape_index, material_index}) {
+        const int here = static_cast<int>(scene.grains.size());
+        if (in_points) {
+            check_point_size(deck, from, shape.dx * choices[id].scale);
+        } else if (previous != std::pair{shape_index, material_index}) {
             previous = {shape_index, material_index};
-            const bool batched = material.model != ForceModel::correspondence &&
-                                 makes_batches(deck.compute, group_size[previous]);
-            MaterialGroup<Dim> group{make_model<Dim>(shape, material, kernel_choice(deck.compute, batched))};
-            group.batched = batched;
-            group.first_grain = static_cast<int>(scene.grains.size());
-            group.bond_damping = material.bond_damping;
-            group.damped = material.bond_damping > 0.0;
-            group.breakable = material.can_break();
-            group.plastic = material.can_yield();
-            group.breaks_by_work =
-                std::visit([](const auto& model) { return model.break_limit().by_work; }, group.model);
-            group.density = material.density;
-            scene.groups.push_back(std::move(group));
+            scene.groups.push_back(make_group(deck, shape, material, group_size[previous]));
+            scene.groups.back().first_grain = here;
         }
-        MaterialGroup<Dim>& group = scene.groups.back();
-        group.last_grain = static_cast<int>(scene.grains.size()) + 1;
+        if (!in_points) scene.groups.back().last_grain = here + 1;
         Grain<Dim> grain;
         grain.shape = &shape;
         grain.scale = choices[id].scale;
@@ -210,11 +229,47 @@ void place_grains(const Deck& deck, Scene<Dim>& scene) {
             grain.volume += scene.particles.volume.back();
             grain.mass += scene.particles.mass.back();
         }
-        const std::size_t n_bonds =
-            static_cast<std::size_t>(std::visit([](const auto& m) { return m.n_bonds(); }, group.model));
-        scene.n_bonds += static_cast<std::int64_t>(n_bonds);
-        scene.grain_of_id[static_cast<std::size_t>(id)] = static_cast<int>(scene.grains.size());
+        if (!in_points)
+            scene.n_bonds +=
+                std::visit([](const auto& model) { return model.n_bonds(); }, scene.groups.back().model);
+        scene.grain_of_id[static_cast<std::size_t>(id)] = here;
         scene.grains.push_back(grain);
+    }
+}
+
+/// Grains of material points, all that follow the groups. Their frequencies: those of grains of a shape and
+/// material lie between those of the smallest and the largest, and depend a little on where the grain lies in
+/// its cells.
+template <int Dim>
+void add_points(const Deck& deck, Scene<Dim>& scene) {
+    const int first = scene.groups.empty() ? 0 : scene.groups.back().last_grain;
+    const int n_grains = static_cast<int>(scene.grains.size());
+    if (first == n_grains) return;
+    MaterialPoints<Dim>& points = scene.points.emplace(scene.grid, deck.material_points);
+    for (int g = first; g < n_grains; ++g) {
+        const Grain<Dim>& grain = scene.grains[g];
+        const Material& material = deck.materials[grain.material];
+        points.add_grain(
+            grain,
+            std::span(scene.particles.volume)
+                .subspan(static_cast<std::size_t>(grain.first), static_cast<std::size_t>(grain.count)),
+            {material.bulk_modulus, material.shear_modulus, material.yield_stress,
+             material.hardening_modulus});
+    }
+    for (int begin = first, end; begin < n_grains; begin = end) {
+        int small = begin, large = begin;
+        const auto like = [&](const Grain<Dim>& grain) {
+            return grain.shape == scene.grains[begin].shape && grain.material == scene.grains[begin].material;
+        };
+        for (end = begin; end < n_grains && like(scene.grains[end]); ++end) {
+            if (scene.grains[end].scale < scene.grains[small].scale) small = end;
+            if (scene.grains[end].scale > scene.grains[large].scale) large = end;
+        }
+        double frequency = points.max_frequency(scene.particles, small - first);
+        if (large != small)
+            frequency = std::max(frequency, points.max_frequency(scene.particles, large - first));
+        scene.point_frequency.insert(scene.point_frequency.end(), static_cast<std::size_t>(end - begin),
+                                     frequency);
     }
 }
 
@@ -259,14 +314,22 @@ void add_node_pairs(const Deck& deck, Scene<Dim>& scene) {
         body.bulk_modulus = material.bulk_modulus;
         body.modulus = dilatational_modulus<Dim>(material);
         body.bond_damping = material.bond_damping;
-        std::visit(
-            [&](const auto& model) {
-                const std::vector<double>& lengths = model.bonds().length;
-                body.horizon = scale * model.horizon();
-                body.least_distance = scale * *std::min_element(lengths.begin(), lengths.end());
-                body.frequency = model.max_frequency() / scale;
-            },
-            scene.group_of(static_cast<int>(g)).model);
+        const auto measure = [&](const Bonds<Dim>& bonds) {
+            body.horizon = scale * bonds.horizon;
+            body.least_distance = scale * *std::min_element(bonds.length.begin(), bonds.length.end());
+        };
+        if (const int k = scene.point_grain(static_cast<int>(g)); k >= 0) {
+            // Springs of the layer that a peridynamic grain would have.
+            measure(make_bonds(*scene.grains[g].shape, material));
+            body.frequency = scene.point_frequency[k];
+        } else {
+            std::visit(
+                [&](const auto& model) {
+                    measure(model.bonds());
+                    body.frequency = model.max_frequency() / scale;
+                },
+                scene.group_of(static_cast<int>(g)).model);
+        }
         bodies.push_back(body);
     }
     const NodePairOptions options = node_pair_options(deck.contact.node_pair);
@@ -459,10 +522,11 @@ template <int Dim>
 std::vector<BrokenBond> Scene<Dim>::broken_bonds(int grain) const {
     const BondBits intact = view(grain).alive;
     std::vector<BrokenBond> broken;
+    if (intact.empty()) return broken;
     std::visit(
         [&](const auto& model) {
             const Bonds<Dim>& bonds = model.bonds();
-            for (int i = 0; i < bonds.n_nodes() && !intact.empty(); ++i)
+            for (int i = 0; i < bonds.n_nodes(); ++i)
                 for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
                     if (!intact[b]) broken.push_back({i, bonds.partner[b]});
         },
@@ -472,7 +536,7 @@ std::vector<BrokenBond> Scene<Dim>::broken_bonds(int grain) const {
 
 template <int Dim>
 double Scene<Dim>::elastic_energy() const {
-    double energy = 0.0;
+    double energy = points ? points->elastic_energy(particles) : 0.0;
     for (const MaterialGroup<Dim>& group : groups)
         energy += std::visit(
             [&](const auto& model) {
@@ -511,6 +575,7 @@ double Scene<Dim>::stable_step() const {
                                         (std::sqrt(1.0 + zeta * zeta / (grains[g].scale * grains[g].scale)) -
                                          zeta / grains[g].scale));
     }
+    for (const double omega : point_frequency) least = std::min(least, 2.0 / omega);
     if (const auto* pairs = contact ? std::get_if<NodePairContact<Dim>>(&*contact) : nullptr)
         least = std::min(least, pairs->stable_step());
     return least;
@@ -521,6 +586,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     auto scene = std::make_unique<Scene<Dim>>(make_grid<Dim>(deck.grid));
     add_walls(deck, *scene);
     place_grains(deck, *scene);
+    add_points(deck, *scene);
     mark_cracked(deck, *scene);
     plan_forces(deck, *scene);
     set_cracks(deck, *scene);
@@ -558,6 +624,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
             arrays.drift_before.assign(n, Vec<Dim>::Zero());
         }
     }
+    if (scene->points) arrays.drift.assign(n, Vec<Dim>::Zero());
     hand_over_cracks(*scene);
     scene->gravity = vec<Dim>(deck.gravity);
     scene->mass_damping = deck.mass_damping;

@@ -11,6 +11,7 @@
 #include "contact/contact_method.hpp"
 #include "particles/bond_energy.hpp"
 #include "particles/grains.hpp"
+#include "particles/material_points.hpp"
 #include "particles/peridynamic_model.hpp"
 #include "particles/union_batch.hpp"
 #include "src/deck/deck.hpp"
@@ -54,9 +55,16 @@ template <int Dim>
 struct StepArrays {
     std::vector<Vec<Dim>> internal, damping, load;
     std::vector<Vec<Dim>> v_before;  ///< velocity half a step back
-    std::vector<Vec<Dim>> drift;     ///< flip coupling: velocity that moves positions
+    std::vector<Vec<Dim>> drift;     ///< flip coupling, material points: velocity that moves positions
     std::vector<Vec<Dim>> drift_before;
     std::vector<Vec<Dim>> wall_v_before;  ///< [n_walls] velocity half a step back
+};
+
+/// Velocities and their changes while contact acts on material points, point_contact.hpp [m/s].
+template <int Dim>
+struct PointContact {
+    std::vector<Vec<Dim>> before, u, star, asked, change, added;  ///< [n]
+    ContactReport<Dim> report;
 };
 
 /// Where a grain's bits are.
@@ -83,9 +91,14 @@ struct Scene {
     std::vector<std::unique_ptr<Shape<Dim>>> shapes;
     std::vector<MaterialGroup<Dim>> groups;
     std::vector<UnionBatch<Dim>> unions;
-    std::vector<ForceTask> force_tasks;  ///< every grain once
-    std::vector<Grain<Dim>> grains;      ///< sorted by group; Grain::id is the number in the deck
-    std::vector<int> grain_of_id;        ///< [n_grains] position of each deck number in `grains`
+    std::vector<ForceTask> force_tasks;         ///< every peridynamic grain once
+    std::optional<MaterialPoints<Dim>> points;  ///< none: all grains are peridynamic
+    PointContact<Dim> point_contact;
+    std::vector<double> point_frequency;  ///< [points->n_grains()] highest of each grain [rad/s]
+    /// Peridynamic grains, sorted by group, then those of material points. Grain::id is the number in the
+    /// deck.
+    std::vector<Grain<Dim>> grains;
+    std::vector<int> grain_of_id;  ///< [n_grains] position of each deck number in `grains`
     Particles<Dim> particles;
     std::vector<Vec<Dim>> x_start;            ///< positions as placed [m]
     std::int64_t n_cut = 0;                   ///< bonds that cracks cross at the start
@@ -123,7 +136,11 @@ struct Scene {
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     std::span<PlasticStrain<Dim>> plastic_of(int grain);
     std::span<BondWork> works_of(int grain);  ///< [n_bonds]; empty: does not break by energy
-    const MaterialGroup<Dim>& group_of(int grain) const;
+    const MaterialGroup<Dim>& group_of(int grain) const;  ///< of a peridynamic grain
+    /// Number of a grain in `points`; negative: it is peridynamic.
+    int point_grain(int grain) const {
+        return points ? grain - static_cast<int>(grains.size()) + points->n_grains() : -1;
+    }
     std::vector<BrokenBond> broken_bonds(int grain) const;  ///< ascending
     bool moves_with_grid() const;                           ///< positions move with StepArrays::drift
     /// What contact reads of it.

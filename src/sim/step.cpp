@@ -9,6 +9,7 @@
 #include "grid/error.hpp"
 #include "grid/parallel.hpp"
 #include "src/sim/internal_forces.hpp"
+#include "src/sim/point_contact.hpp"
 
 namespace quern {
 
@@ -43,6 +44,7 @@ void add_loads(Scene<Dim>& scene, double time) {
             for (int k = 0; k < Dim; ++k)
                 a.load[p][k] += amount * value<Dim>(load.value[k], scene.particles.x[p], time);
         }
+    if (scene.points) project_forces(scene, a.load);
 }
 
 /// v* = v + dt f/m, and what the forces do on the way.
@@ -171,9 +173,12 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
     const ContactTrial<Dim> trial{
         now.dt,     scene.arrays.v_before, scene.particles.v, scene.arrays.drift, fastest, now.first,
         now.listing};
-    const ContactReport<Dim>& report = std::visit(
-        [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
-        *scene.contact);
+    const ContactReport<Dim>& report =
+        scene.points
+            ? add_point_impulses(scene, view, trial)
+            : std::visit(
+                  [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
+                  *scene.contact);
     if (now.listing)
         std::visit([&](auto& method) { method.list_contacts(view, now.contact_list); }, *scene.contact);
     apply_constraints(scene, now, true);
@@ -252,6 +257,13 @@ void close_ledger(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
         entry.transfer = sums.transfer + entry.normal + entry.friction + entry.wall + entry.constraint;
 }
 
+/// Stress and strain of material points go to the end of the step, and `drift` to what moves each particle.
+template <int Dim>
+void move_points(Scene<Dim>& scene, StepContext<Dim>& now) {
+    const StageTimer timer(now.stages.points);
+    now.ledger.past.plastic += scene.points->move(scene.particles, now.dt, scene.arrays.drift);
+}
+
 }  // namespace
 
 template <int Dim>
@@ -309,9 +321,10 @@ void kick(Scene<Dim>& scene, StepContext<Dim>& now) {
 
 template <int Dim>
 void drift(Scene<Dim>& scene, StepContext<Dim>& now) {
+    if (scene.points) move_points(scene, now);
     const StageTimer timer(now.stages.drift);
     Particles<Dim>& particles = scene.particles;
-    const bool with_grid = scene.moves_with_grid();
+    const bool with_grid = scene.moves_with_grid() || scene.points;
     const std::vector<Vec<Dim>>& velocity = with_grid ? scene.arrays.drift : particles.v;
     struct Moved {
         double fastest = 0.0;  ///< squared speed

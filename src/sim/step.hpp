@@ -4,6 +4,9 @@
 //     v(n+1/2)  = contact(v*, x(n))                  impulses, nothing moves
 //     x(n+1)    = x(n) + dt v(n+1/2)                 drift
 //
+// Material points move with u(n+1/2), v(n+1/2) by way of the grid, and their stress follows (particles/
+// material_points.hpp).
+//
 // One kick and one drift a step: a body without forces moves by v dt. The clock starts with half a kick, so
 // that the velocity given at t = 0 is that of t = 0. Prescribed velocities are taken at t(n+1/2): what they
 // move goes where the formula says, exactly if its velocity is linear in time, else within dt^2 (a(t) -
@@ -18,7 +21,7 @@ namespace quern {
 
 /// Seconds spent in each stage of the step, in its order.
 struct StageTimes {
-    double internal_forces = 0, loads = 0, kick = 0, contact = 0, drift = 0, output = 0;
+    double internal_forces = 0, loads = 0, kick = 0, contact = 0, points = 0, drift = 0, output = 0;
 };
 
 /// Works done on the particles since the clock started, up to the middle of the last step [J; 2D: J/m], and

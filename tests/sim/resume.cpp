@@ -124,6 +124,11 @@ TEST_CASE("Resume: in space, through the grid, with moving walls") {
     check_killed({flip, {}, 1}, SIGKILL, {3, 20});
 }
 
+TEST_CASE("Resume: material points, in space, with moving walls") {
+    const std::string points = replaced(flip, "rubber: {density", "rubber: {model: material_points, density");
+    check_killed({points, {"contact.coupling=impulse", "time.end=0.5"}, 1}, SIGKILL, {3, 20});
+}
+
 TEST_CASE("Resume: a wall that presses as hard as asked") {
     const std::string lid =
         replaced(unequal_deck, "{side: x+}]",
