@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <functional>
-#include <numeric>
+#include <fstream>
 
 #include "grid/error.hpp"
 #include "src/deck/names.hpp"
@@ -25,7 +25,6 @@ constexpr double mean_width = 0.1, largest_width = 0.5;  ///< of the lines of th
 
 struct Drawing {
     const PlotOptions& options;
-    std::string title;
     std::string file;
 };
 
@@ -76,8 +75,9 @@ void check_region(const ObservedTable& table, const std::string& region) {
 
 void draw_energy(const Drawing& drawing) {
     const Columns history = read_columns(drawing.options.directory + "/history.csv");
+    const char* label = history.find("momentum_z") ? "energy [J]" : "energy [J/m]";
     const auto chart = [&](const char* title, const std::vector<std::string>& names) {
-        Chart chart{title, "time [s]", "energy [J]", {}};
+        Chart chart{title, "time [s]", label, {}};
         for (const std::string& name : names) {
             const std::vector<double>* values = history.find(name);
             const bool any =
@@ -98,7 +98,10 @@ void draw_forces(const Drawing& drawing) {
     for (const char* axis : {"x", "y", "z"}) {
         const std::string column = std::string("f") + axis;
         if (!reactions.has(column)) continue;
-        Chart chart{fmt::format("Force along {}", axis), "time [s]", fmt::format("{} [N]", column), {}};
+        Chart chart{fmt::format("Force along {}", axis),
+                    "time [s]",
+                    fmt::format("{} [{}]", column, reactions.has("fz") ? "N" : "N/m"),
+                    {}};
         for (const std::string& name : reactions.names()) {
             const std::vector<std::size_t> rows = reactions.rows_of(name);
             chart.lines.push_back(
@@ -309,12 +312,20 @@ const std::vector<Plot>& plots() {
     return all;
 }
 
+/// The first lines of a file: the names of its columns, and one row if there is any.
+std::array<std::string, 2> first_lines(const std::string& file) {
+    std::ifstream stream(file);
+    std::array<std::string, 2> lines;
+    for (std::string& line : lines) std::getline(stream, line);
+    return lines;
+}
+
 /// What a plot lacks; "" if it can be drawn.
 std::string lack(const Plot& plot, const std::string& directory) {
     for (const std::string& name : plot.needs) {
         if (!std::filesystem::exists(directory + "/" + name)) return "no " + name;
         if (!name.ends_with(".csv")) continue;
-        if (read_columns(directory + "/" + name).n_rows() == 0) return "no rows in " + name;
+        if (first_lines(directory + "/" + name)[1].empty()) return "no rows in " + name;
     }
     return {};
 }
@@ -337,8 +348,7 @@ PlotReport plot(const PlotOptions& options) {
             throw InputError("plot", fmt::format("'{}'", name),
                              fmt::format("one of {}", fmt::join(known, ", ")), did_you_mean(name, known));
     const std::string folder = options.output.empty() ? options.directory + "/plots" : options.output;
-    const bool flat = std::filesystem::exists(options.directory + "/contacts.csv") &&
-                      !read_columns(options.directory + "/contacts.csv").find("nz");
+    const bool flat = first_lines(options.directory + "/contacts.csv")[0].find(",nz,") == std::string::npos;
     PlotReport report;
     for (const Plot& plot : plots()) {
         const bool wanted =
@@ -357,7 +367,7 @@ PlotReport plot(const PlotOptions& options) {
             continue;
         }
         const std::string file = fmt::format("{}/{}.png", folder, plot.name);
-        plot.draw({options, "", file});
+        plot.draw({options, file});
         report.files.push_back(file);
     }
     return report;

@@ -40,7 +40,8 @@ TEST_CASE("Plot: an observed run gives every picture, or those that are asked fo
     CAPTURE(all.err);
     CHECK(all.code == 0);
     CHECK_FALSE(contains(all.out, "left out"));
-    for (const auto& [name, about] : plot_names()) {
+    for (const std::pair<std::string, std::string>& plot : plot_names()) {
+        const std::string name = plot.first;
         const std::string file = run.out + "/plots/" + name + ".png";
         CHECK_MESSAGE(read_file(file).starts_with("\x89PNG"), name);
         CHECK(contains(all.out, file));
