@@ -88,7 +88,7 @@ void draw_energy(const Drawing& drawing) {
     };
     draw_charts({chart("Stored", {"kinetic", "elastic", "contact_elastic", "gravity"}),
                  chart("Work and loss", {"external_work", "damping", "friction", "contact_loss", "fracture",
-                                         "transfer_loss", "residual"})},
+                                         "plastic", "transfer_loss", "residual"})},
                 2, drawing.file);
 }
 
