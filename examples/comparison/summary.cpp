@@ -70,9 +70,9 @@ const std::vector<Row> rows = {
 /// Differences below this part, or values below round-off, are no differences.
 constexpr double same = 0.05, round_off = 1e-12;
 
-class Summary {
+class Overview {
   public:
-    explicit Summary(std::string directory) : directory_(std::move(directory)) {
+    explicit Overview(std::string directory) : directory_(std::move(directory)) {
         for (const Row& row : rows)
             if (!cases_.count(row.case_name))
                 cases_.emplace(row.case_name, Numbers(directory_ + "/" + row.case_name + "/comparison.json"));
@@ -148,7 +148,7 @@ class Summary {
 }  // namespace
 
 void write_summary(const std::string& directory) {
-    const Summary summary(directory);
+    const Overview summary(directory);
     summary.write_table();
     summary.draw();
 }

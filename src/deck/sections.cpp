@@ -54,7 +54,7 @@ void check_continuum(const MaterialInput& m, const Cursor& at, const Context& no
             fmt::format("stress with model: {}", material_models[static_cast<std::size_t>(m.model)]),
             "plane: strain", "the thickness of a plastic grain is not solved for");
     }
-    if (at.has("hardening_modulus") && !std::isfinite(m.yield_stress)) {
+    if (m.hardening_modulus > 0.0 && !std::isfinite(m.yield_stress)) {
         throw InputError(at.where("hardening_modulus"), "hardening_modulus of a material that never yields",
                          "yield_stress beside it");
     }

@@ -15,9 +15,9 @@ struct RenderOptions {
     std::string field =
         "speed";  ///< speed, velocity_x.., damage, damage_z, plastic_strain, grain,
                   ///< fragment, von_mises, pressure, stress_xx.., principal_difference, displacement
-    std::string frame = "last";       ///< last, all, or a number from 0
-    std::optional<double> low, high;  ///< of the colours; none: by what the frames hold
-    bool dark = false;                ///< black where nothing is; fields from zero up glow
+    std::string frame = "last";                 ///< last, all, or a number from 0
+    std::optional<double> low = {}, high = {};  ///< of the colours; none: by what the frames hold
+    bool dark = false;                          ///< black where nothing is; fields from zero up glow
     int width = 1200, height = 900;
 };
 

@@ -135,7 +135,7 @@ struct Scene {
     GrainView<Dim> view(int grain) const;
     std::span<std::uint8_t> alive_of(int grain);  ///< bytes of its bonds; empty: cannot break
     std::span<PlasticStrain<Dim>> plastic_of(int grain);
-    std::span<BondWork> works_of(int grain);  ///< [n_bonds]; empty: does not break by energy
+    std::span<BondWork> works_of(int grain);              ///< [n_bonds]; empty: does not break by energy
     const MaterialGroup<Dim>& group_of(int grain) const;  ///< of a peridynamic grain
     /// Number of a grain in `points`; negative: it is peridynamic.
     int point_grain(int grain) const {

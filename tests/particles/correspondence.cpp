@@ -103,7 +103,7 @@ void check_uniform(bool shear) {
         F = motion<Dim>(0.2 * k / n_steps, shear, 0.5 * std::numbers::pi * k / n_steps);
         const Field<Dim> x = mapped<Dim>(shape, F, scale);
         f.assign(x.size(), Vec<Dim>::Zero());
-        work += model.flow({scale, x, {}, {}, {}, {}, 1.0, plastic}, plastic, f);
+        work += model.flow({scale, x, {}, {}, {}, {}, 1.0, {}, plastic}, plastic, f);
         tau = update<Dim>(point, Mat<Dim>(F * before.inverse()), law, work_of_point);
         before = F;
         const Mat<Dim> P = to_matrix<Dim>(tau) * F.inverse().transpose();
@@ -118,7 +118,7 @@ void check_uniform(bool shear) {
     CHECK(uneven < 1e-10);  // measured 2e-14, bound 1e-10
     CHECK(work == doctest::Approx(V * work_of_point).epsilon(1e-9));
     const Field<Dim> x = mapped<Dim>(shape, F, scale);
-    const GrainView<Dim> view{scale, x, {}, {}, {}, {}, 1.0, plastic};
+    const GrainView<Dim> view{scale, x, {}, {}, {}, {}, 1.0, {}, plastic};
     CHECK(model.elastic_energy(view) == doctest::Approx(V * elastic_energy<Dim>(point, law)).epsilon(1e-9));
     std::vector<double> stress(shape.X.size() * n_stress<Dim>);
     model.compute_stress(view, stress);
