@@ -37,7 +37,8 @@ void add_scaled(ContactReport<Dim>& sum, const ContactReport<Dim>& round, double
 
 template <int Dim>
 const ContactReport<Dim>& add_point_impulses(Scene<Dim>& scene, const ContactScene<Dim>& view,
-                                             const ContactTrial<Dim>& trial) {
+                                             const ContactTrial<Dim>& trial,
+                                             std::vector<ContactPoint<Dim>>& list) {
     MaterialPoints<Dim>& points = *scene.points;
     PointContact<Dim>& c = scene.point_contact;
     const std::size_t n = trial.v.size();
@@ -48,6 +49,12 @@ const ContactReport<Dim>& add_point_impulses(Scene<Dim>& scene, const ContactSce
     const bool springs = std::holds_alternative<NodePairContact<Dim>>(*scene.contact);
     ContactTrial<Dim> asked = trial;
     asked.v_before = c.before;
+    const auto list_round = [&](double w) {
+        if (!trial.listing) return;
+        const std::size_t n_before = list.size();
+        std::visit([&](auto& method) { method.list_contacts(view, list); }, *scene.contact);
+        for (std::size_t k = n_before; k < list.size(); ++k) list[k].impulse *= w;
+    };
     double first = 0.0;
     for (int round = 0; round < max_rounds; ++round) {
         c.asked = c.u;
@@ -65,6 +72,7 @@ const ContactReport<Dim>& add_point_impulses(Scene<Dim>& scene, const ContactSce
         if (springs) {
             parallel::for_each(
                 n, [&](std::size_t p) { trial.v[p] += c.change[p]; }, 256);
+            list_round(1.0);
             return report;
         }
         points.project(scene.particles, c.change, c.added);
@@ -81,6 +89,7 @@ const ContactReport<Dim>& add_point_impulses(Scene<Dim>& scene, const ContactSce
             },
             256);
         add_scaled(c.report, report, round == 0 ? w - 1.0 : w);
+        list_round(w);
         if (round == 0) first = products.done;
         if (products.done <= round_tolerance * round_tolerance * first) break;
     }
@@ -103,9 +112,9 @@ void project_forces(Scene<Dim>& scene, std::vector<Vec<Dim>>& f) {
 }
 
 template const ContactReport<2>& add_point_impulses<2>(Scene<2>&, const ContactScene<2>&,
-                                                       const ContactTrial<2>&);
+                                                       const ContactTrial<2>&, std::vector<ContactPoint<2>>&);
 template const ContactReport<3>& add_point_impulses<3>(Scene<3>&, const ContactScene<3>&,
-                                                       const ContactTrial<3>&);
+                                                       const ContactTrial<3>&, std::vector<ContactPoint<3>>&);
 template void project_forces<2>(Scene<2>&, std::vector<Vec<2>>&);
 template void project_forces<3>(Scene<3>&, std::vector<Vec<3>>&);
 

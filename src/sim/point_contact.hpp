@@ -12,7 +12,7 @@
 // what is added falls below `round_tolerance` of the first round, at most `max_rounds` times; w is the best
 // step along c. P is symmetric: J.u = (P J).v, so the works that contact books with u are those of v, but for
 // the rounds, whose sum is booked as it is. Springs between nodes are forces: asked once, mapped with w = 1,
-// they keep energy.
+// they keep energy. A list of contacts holds the impulses of all rounds, each times its w. Our own.
 #pragma once
 
 #include "src/sim/scene.hpp"
@@ -22,10 +22,12 @@ namespace quern {
 inline constexpr int max_rounds = 12;
 inline constexpr double round_tolerance = 0.02;
 
-/// What contact does to `trial.v`; the report holds until the next call.
+/// What contact does to `trial.v`; the report holds until the next call. With `trial.listing` the contacts
+/// are added to `list`.
 template <int Dim>
 const ContactReport<Dim>& add_point_impulses(Scene<Dim>& scene, const ContactScene<Dim>& view,
-                                             const ContactTrial<Dim>& trial);
+                                             const ContactTrial<Dim>& trial,
+                                             std::vector<ContactPoint<Dim>>& list);
 
 /// Forces [n] on points to what their velocities get of them [N; 2D: N/m].
 template <int Dim>

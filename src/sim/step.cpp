@@ -175,11 +175,11 @@ void add_contact(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
         now.listing};
     const ContactReport<Dim>& report =
         scene.points
-            ? add_point_impulses(scene, view, trial)
+            ? add_point_impulses(scene, view, trial, now.contact_list)
             : std::visit(
                   [&](auto& method) -> const ContactReport<Dim>& { return method.add_impulses(view, trial); },
                   *scene.contact);
-    if (now.listing)
+    if (now.listing && !scene.points)
         std::visit([&](auto& method) { method.list_contacts(view, now.contact_list); }, *scene.contact);
     apply_constraints(scene, now, true);
     if (auto* pairs = std::get_if<NodePairContact<Dim>>(&*scene.contact); pairs && !scene.constraints.empty())

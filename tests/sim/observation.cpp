@@ -109,6 +109,26 @@ TEST_CASE("Observation: two disks pressed together press with the force that dri
         }
 }
 
+TEST_CASE("Observation: material points press with the impulses of all rounds of contact") {
+    const std::string text =
+        replaced(plane_deck, "rubber: {density", "rubber: {model: material_points, density") +
+        R"yaml(time: {end: 0.4}
+damping: {mass: 60}
+output: {interval: 0.4, history_interval: 0.1, track: all}
+observe: {}
+contact: {rule: pair}
+loads: [{grains: [0], acceleration: [10, 0]}, {grains: [1], acceleration: [-10, 0]}]
+grains:
+  - {shape: disk, material: rubber, position: [2.5, 2]}
+  - {shape: disk, material: rubber, position: [3.499, 2]}
+)yaml";
+    const RunRecord record = run_text(text);
+    const std::vector<Row> contacts = table(record, text, "contacts");
+    REQUIRE(contacts.size() == 1);
+    const double expected = 3000.0 * table(record, text, "grain_stress")[0].at("volume") * 10.0;
+    CHECK(contacts[0].at("fn") == doctest::Approx(expected).epsilon(0.02));  // measured 0.013, bound 0.02
+}
+
 TEST_CASE("Observation: the stress of a box is the pressure on its walls") {
     for (const Way& way : ways) {
         CAPTURE(way.name);
