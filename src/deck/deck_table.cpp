@@ -443,7 +443,7 @@ Table<OutputDeck> output_table() {
                 "Between rows of history.csv and grains.csv; auto: 1000 rows");
     add_ids(t, "track", &T::track, &T::groups, "Grains in grains.csv");
     // Unlike loads, an output tracks none by default, and says so with an empty list.
-    Field<T>& track = t.fields.back();
+    KeyField<T>& track = t.fields.back();
     const auto read_ids = track.read;
     track.read = [read_ids](T& output, const Cursor& at, const Context& now) {
         if (at.node().kind == Node::Kind::list && at.node().items.empty()) return;

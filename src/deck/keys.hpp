@@ -17,21 +17,21 @@ namespace quern {
 
 /// A key and the way from its value to a member of T and back.
 template <class T>
-struct Field {
+struct KeyField {
     Key key;
     std::function<void(T&, const Cursor&, const Context&)> read;
     /// Value as YAML in one line, or a block of lines for sections; "": the key is left out.
     std::function<std::string(const T&, int dimension)> write;
 
-    Field& require() {
+    KeyField& require() {
         key.required = true;
         return *this;
     }
-    Field& in_dimension(int dimension) {
+    KeyField& in_dimension(int dimension) {
         key.dimension = dimension;
         return *this;
     }
-    Field& only_for(std::vector<std::string> types) {
+    KeyField& only_for(std::vector<std::string> types) {
         key.types = std::move(types);
         return *this;
     }
@@ -42,33 +42,33 @@ struct Field {
 template <class T>
 class Table {
   public:
-    std::vector<Field<T>> fields;
+    std::vector<KeyField<T>> fields;
     std::function<std::string(const T&)> type_of;
     std::function<void(T&, const Cursor&, const Context&)> finish;
 
-    Field<T>& add(Key key, std::function<void(T&, const Cursor&, const Context&)> read,
-                  std::function<std::string(const T&, int)> write) {
+    KeyField<T>& add(Key key, std::function<void(T&, const Cursor&, const Context&)> read,
+                     std::function<std::string(const T&, int)> write) {
         fields.push_back({std::move(key), std::move(read), std::move(write)});
         return fields.back();
     }
 
-    Field<T>& number(const char* name, double T::*member, const char* unit, const Range& range,
-                     const char* about) {
+    KeyField<T>& number(const char* name, double T::*member, const char* unit, const Range& range,
+                        const char* about) {
         const Key key{.name = name, .form = Form::number, .unit = unit, .range = range, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_number(at, now, key); },
             [=](const T& t, int) { return number_text(t.*member); });
     }
-    Field<T>& number(const char* name, std::optional<double> T::*member, const char* unit, const Range& range,
-                     const char* about) {
+    KeyField<T>& number(const char* name, std::optional<double> T::*member, const char* unit,
+                        const Range& range, const char* about) {
         const Key key{.name = name, .form = Form::number, .unit = unit, .range = range, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_number(at, now, key); },
             [=](const T& t, int) { return t.*member ? number_text(*(t.*member)) : std::string(); });
     }
     /// A number for which 0 in the struct stands for the word, e.g. "auto".
-    Field<T>& number_or(const char* name, double T::*member, const char* word, const char* unit,
-                        const Range& range, const char* about) {
+    KeyField<T>& number_or(const char* name, double T::*member, const char* word, const char* unit,
+                           const Range& range, const char* about) {
         const Key key{.name = name,
                       .form = Form::number,
                       .unit = unit,
@@ -82,13 +82,13 @@ class Table {
             },
             [=](const T& t, int) { return t.*member == 0.0 ? std::string(word) : number_text(t.*member); });
     }
-    Field<T>& integer(const char* name, int T::*member, const Range& range, const char* about) {
+    KeyField<T>& integer(const char* name, int T::*member, const Range& range, const char* about) {
         const Key key{.name = name, .form = Form::integer, .range = range, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_integer(at, now, key); },
             [=](const T& t, int) { return std::to_string(t.*member); });
     }
-    Field<T>& flag(const char* name, bool T::*member, const char* about) {
+    KeyField<T>& flag(const char* name, bool T::*member, const char* about) {
         const Key key{.name = name, .form = Form::flag, .words = {"true", "false"}, .about = about};
         return add(
             key,
@@ -97,8 +97,8 @@ class Table {
     }
     /// Words stand in the order of the enumerators.
     template <class Base, class Enum>
-    Field<T>& word(const char* name, Enum Base::*member, const std::vector<std::string>& words,
-                   const char* about) {
+    KeyField<T>& word(const char* name, Enum Base::*member, const std::vector<std::string>& words,
+                      const char* about) {
         const Key key{.name = name, .form = Form::word, .words = words, .about = about};
         return add(
             key,
@@ -107,22 +107,22 @@ class Table {
             },
             [=](const T& t, int) { return words[static_cast<std::size_t>(t.*member)]; });
     }
-    Field<T>& text(const char* name, std::string T::*member, const char* about) {
+    KeyField<T>& text(const char* name, std::string T::*member, const char* about) {
         const Key key{.name = name, .form = Form::text, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_text(at, now, key); },
             [=](const T& t, int) { return (t.*member).empty() ? std::string() : quoted(t.*member); });
     }
     /// One number an axis.
-    Field<T>& vector(const char* name, Numbers3 T::*member, const char* unit, const Range& range,
-                     const char* about) {
+    KeyField<T>& vector(const char* name, Numbers3 T::*member, const char* unit, const Range& range,
+                        const char* about) {
         const Key key{.name = name, .form = Form::vector, .unit = unit, .range = range, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_vector(at, now, key); },
             [=](const T& t, int dimension) { return vector_text(t.*member, dimension); });
     }
-    Field<T>& vector(const char* name, std::optional<Numbers3> T::*member, const char* unit,
-                     const Range& range, const char* about) {
+    KeyField<T>& vector(const char* name, std::optional<Numbers3> T::*member, const char* unit,
+                        const Range& range, const char* about) {
         const Key key{.name = name, .form = Form::vector, .unit = unit, .range = range, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_vector(at, now, key); },
@@ -131,7 +131,7 @@ class Table {
             });
     }
     /// Angle or spin: a number (about z) in 2D, a vector in 3D.
-    Field<T>& turn(const char* name, Numbers3 T::*member, const char* unit, const char* about) {
+    KeyField<T>& turn(const char* name, Numbers3 T::*member, const char* unit, const char* about) {
         const Key key{.name = name, .form = Form::turn, .unit = unit, .range = any_number, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_turn(at, now, key); },
@@ -140,15 +140,15 @@ class Table {
             });
     }
     /// One formula an axis; none at all if the list is empty.
-    Field<T>& formulas(const char* name, std::vector<Expression> T::*member, const char* unit,
-                       const std::vector<std::string>& variables, const char* about) {
+    KeyField<T>& formulas(const char* name, std::vector<Expression> T::*member, const char* unit,
+                          const std::vector<std::string>& variables, const char* about) {
         const Key key{.name = name, .form = Form::formulas, .unit = unit, .words = variables, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_formulas(at, now, key); },
             [=](const T& t, int) { return formulas_text(t.*member); });
     }
-    Field<T>& formula(const char* name, std::optional<Expression> T::*member,
-                      const std::vector<std::string>& variables, const char* about) {
+    KeyField<T>& formula(const char* name, std::optional<Expression> T::*member,
+                         const std::vector<std::string>& variables, const char* about) {
         const Key key{.name = name, .form = Form::formula, .words = variables, .about = about};
         return add(
             key, [=](T& t, const Cursor& at, const Context& now) { t.*member = read_formula(at, now, key); },
@@ -156,16 +156,16 @@ class Table {
     }
 
     template <class S>
-    Field<T>& section(const char* name, S T::*member, const Table<S>& table, const char* about);
+    KeyField<T>& section(const char* name, S T::*member, const Table<S>& table, const char* about);
     template <class S>
-    Field<T>& section(const char* name, std::optional<S> T::*member, const Table<S>& table,
-                      const char* about);
+    KeyField<T>& section(const char* name, std::optional<S> T::*member, const Table<S>& table,
+                         const char* about);
     /// A list of sections.
     template <class S>
-    Field<T>& list(const char* name, std::vector<S> T::*member, const Table<S>& table, const char* about);
+    KeyField<T>& list(const char* name, std::vector<S> T::*member, const Table<S>& table, const char* about);
     /// A section of sections whose names the user chooses; they become S::name.
     template <class S>
-    Field<T>& named(const char* name, std::vector<S> T::*member, const Table<S>& table, const char* about);
+    KeyField<T>& named(const char* name, std::vector<S> T::*member, const Table<S>& table, const char* about);
 };
 
 enum class Layout { block, flow };
@@ -174,7 +174,7 @@ enum class Layout { block, flow };
 template <class T>
 std::vector<Key> keys_of(const Table<T>& table) {
     std::vector<Key> keys;
-    for (const Field<T>& field : table.fields) {
+    for (const KeyField<T>& field : table.fields) {
         keys.push_back(field.key);
         const bool has_default = !field.key.required && field.key.children.empty();
         if (has_default) keys.back().fallback = field.write(T{}, 2);
@@ -190,10 +190,10 @@ T read_section(const Cursor& at, const Context& now, const Table<T>& table) {
         throw InputError(at.where(), at.node().description(), "a section (key: value)");
     }
     std::vector<std::string> names;
-    for (const Field<T>& field : table.fields) names.push_back(field.key.name);
+    for (const KeyField<T>& field : table.fields) names.push_back(field.key.name);
     check_names(at, names);
     T result{};
-    for (const Field<T>& field : table.fields) {
+    for (const KeyField<T>& field : table.fields) {
         const std::string type = table.type_of ? table.type_of(result) : std::string();
         const std::string obstacle = field.key.obstacle(now.dimension, type);
         const Node* node = at.node().find(field.key.name);
@@ -216,7 +216,7 @@ template <class T>
 std::string write_section(const T& section, const Table<T>& table, int dimension, Layout layout) {
     std::string text;
     const std::string type = table.type_of ? table.type_of(section) : std::string();
-    for (const Field<T>& field : table.fields) {
+    for (const KeyField<T>& field : table.fields) {
         if (!field.key.obstacle(dimension, type).empty()) continue;
         const std::string value = field.write(section, dimension);
         if (value.empty()) continue;
@@ -233,7 +233,7 @@ std::string write_section(const T& section, const Table<T>& table, int dimension
 
 template <class T>
 template <class S>
-Field<T>& Table<T>::section(const char* name, S T::*member, const Table<S>& table, const char* about) {
+KeyField<T>& Table<T>::section(const char* name, S T::*member, const Table<S>& table, const char* about) {
     return add(
         {.name = name, .form = Form::section, .about = about, .children = keys_of(table)},
         [=](T& t, const Cursor& at, const Context& now) { t.*member = read_section(at, now, table); },
@@ -242,8 +242,8 @@ Field<T>& Table<T>::section(const char* name, S T::*member, const Table<S>& tabl
 
 template <class T>
 template <class S>
-Field<T>& Table<T>::section(const char* name, std::optional<S> T::*member, const Table<S>& table,
-                            const char* about) {
+KeyField<T>& Table<T>::section(const char* name, std::optional<S> T::*member, const Table<S>& table,
+                               const char* about) {
     return add(
         {.name = name, .form = Form::section, .about = about, .children = keys_of(table)},
         [=](T& t, const Cursor& at, const Context& now) { t.*member = read_section(at, now, table); },
@@ -255,8 +255,8 @@ Field<T>& Table<T>::section(const char* name, std::optional<S> T::*member, const
 
 template <class T>
 template <class S>
-Field<T>& Table<T>::list(const char* name, std::vector<S> T::*member, const Table<S>& table,
-                         const char* about) {
+KeyField<T>& Table<T>::list(const char* name, std::vector<S> T::*member, const Table<S>& table,
+                            const char* about) {
     return add(
         {.name = name, .form = Form::list, .about = about, .children = keys_of(table)},
         [=](T& t, const Cursor& at, const Context& now) {
@@ -276,8 +276,8 @@ Field<T>& Table<T>::list(const char* name, std::vector<S> T::*member, const Tabl
 
 template <class T>
 template <class S>
-Field<T>& Table<T>::named(const char* name, std::vector<S> T::*member, const Table<S>& table,
-                          const char* about) {
+KeyField<T>& Table<T>::named(const char* name, std::vector<S> T::*member, const Table<S>& table,
+                             const char* about) {
     return add(
         {.name = name, .form = Form::named, .about = about, .children = keys_of(table)},
         [=](T& t, const Cursor& at, const Context& now) {

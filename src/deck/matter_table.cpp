@@ -80,9 +80,9 @@ const std::vector<std::string> bond_models = {"lps", "bond_based", "peridem"};
 const std::vector<std::string> plastic_models = {"correspondence", "material_points"};
 
 /// A number of which another key is the alternative: written where it is the one in use.
-Field<MaterialInput>& add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member,
-                                      const char* unit, const Range& range, const char* about,
-                                      const std::function<bool(const MaterialInput&)>& in_use) {
+KeyField<MaterialInput>& add_alternative(Table<MaterialInput>& t, const char* name, double Material::*member,
+                                         const char* unit, const Range& range, const char* about,
+                                         const std::function<bool(const MaterialInput&)>& in_use) {
     const Key key{.name = name, .unit = unit, .range = range, .about = about};
     return t.add(
         key,

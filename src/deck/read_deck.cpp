@@ -18,7 +18,7 @@ LoadInput load_input(const LoadDeck& load) {
 /// The dimension decides how vectors are written, so it is known before anything else is read.
 int read_dimension(const Cursor& at, const Parameters& parameters) {
     const Context context{parameters, 2, {}};
-    for (const Field<DeckInput>& field : deck_table().fields) {
+    for (const KeyField<DeckInput>& field : deck_table().fields) {
         const Node* node = at.node().find("dimension");
         if (node && field.key.name == "dimension") {
             return read_integer(Cursor(at, *node, field.key.name), context, field.key);

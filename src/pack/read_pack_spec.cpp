@@ -169,9 +169,10 @@ Table<RegionSpec> region_table() {
 Table<PackShape> pack_shape_table() {
     Table<PackShape> t;
     t.type_of = [](const PackShape& shape) { return shape_types()[static_cast<std::size_t>(shape.kind)]; };
-    for (const Field<ShapeDeck>& field : shape_table().fields) {
+    for (const KeyField<ShapeDeck>& field : shape_table().fields) {
         const std::string& name = field.key.name;
-        if (name == "filling" || name == "spacing" || name == "file" || name == "unit") continue;
+        if (name == "filling" || name == "spacing" || name == "scaling" || name == "file" || name == "unit")
+            continue;
         t.add(
             field.key,
             [field](PackShape& shape, const Cursor& at, const Context& now) { field.read(shape, at, now); },

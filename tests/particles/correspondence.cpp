@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "particles/shape_checks.hpp"
 #include "tests/particles/force_cases.hpp"
 
 namespace quern::test {
@@ -15,13 +16,6 @@ Material make_plastic(int dim, double yield = std::numeric_limits<double>::infin
     material.yield_stress = yield;
     material.hardening_modulus = hardening;
     return material;
-}
-
-template <int Dim>
-double volume_of(const Shape<Dim>& shape) {
-    double volume = 0.0;
-    for (const double part : shape.volume) volume += part;
-    return volume;
 }
 
 template <int Dim>
@@ -43,7 +37,7 @@ template <int Dim>
 Mat<Dim> virial(const Shape<Dim>& shape, const Field<Dim>& f) {
     Mat<Dim> P = Mat<Dim>::Zero();
     for (std::size_t i = 0; i < f.size(); ++i) P -= f[i] * shape.X[i].transpose();
-    return P / volume_of(shape);
+    return P / total_volume(shape);
 }
 
 /// A strain in steps: `shear` or uniaxial, turned by `turn` [rad] on the way.
@@ -112,7 +106,7 @@ void check_uniform(bool shear) {
         for (const PlasticStrain<Dim>& strain : plastic)
             uneven = std::max(uneven, std::abs(strain.alpha - point.alpha));
     }
-    const double V = std::pow(scale, Dim) * volume_of(shape);
+    const double V = std::pow(scale, Dim) * total_volume(shape);
     CHECK(point.alpha > 0.08);
     CHECK(worst < 1e-9);    // measured 2e-13, bound 1e-9
     CHECK(uneven < 1e-10);  // measured 2e-14, bound 1e-10
