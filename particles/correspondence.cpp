@@ -80,8 +80,9 @@ Mat<Dim> Correspondence<Dim>::gradient(const NodeForce& sum, int i) const {
 template <int Dim>
 double Correspondence<Dim>::softening(double alpha) const {
     if (alpha == 0.0) return 1.0;
-    return 1.0 /
-           (1.0 + 3.0 * law_.shear_modulus * alpha / (law_.yield_stress + law_.hardening_modulus * alpha));
+    const double secant =
+        1.0 / (1.0 + 3.0 * law_.shear_modulus * alpha / (law_.yield_stress + law_.hardening_modulus * alpha));
+    return std::max(secant, least_secant);
 }
 
 template <int Dim>

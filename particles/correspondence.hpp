@@ -6,6 +6,9 @@
 
 namespace quern {
 
+/// Least G_i/G of the stabilisation.
+inline constexpr double least_secant = 0.02;
+
 /// Non-ordinary state-based peridynamics by correspondence, with the law of von_mises.hpp and Silling's
 /// stabilisation:
 ///
@@ -13,7 +16,7 @@ namespace quern {
 ///     P_i  = tau(F_i, history) F_i^-T                                              [Pa]
 ///     z_ij = y - F_i xi                          what is not uniform in the family  [m]
 ///     T_ij = w (P_i K_i^-1 xi + g_i z_ij),       g_i = chi n G_i/m_i               [N/m^6; 2D: N/m^5]
-///     G_i  = G/(1 + 3 G alpha_i/(sigma_y + H alpha_i))                             [Pa]
+///     G_i  = max(G/(1 + 3 G alpha_i/(sigma_y + H alpha_i)), G/50)                  [Pa]
 ///     f_i  = sum_j (T_ij - T_ji) V_i V_j
 ///     E    = sum_i V_i (W(F_i, history) + g_i/2 sum_j w |z_ij|^2 V_j)
 ///
@@ -26,7 +29,9 @@ namespace quern {
 ///
 /// G_i is the secant shear modulus of the law in proportional straining. z is zero in uniform strain, but
 /// grows with gradients of plastic strain, and with the elastic G a bent bar would harden for ever by it.
-/// What a falling g_i sets free of E is plastic work; by the mean of |z|^2 over the step, to second order.
+/// The bound of a fiftieth holds corners together whose family is a quarter of a ball: without it one that
+/// had flowed to alpha = 11 turned inside out (docs/plasticity.md). What a falling g_i sets free of E is
+/// plastic work; by the mean of |z|^2 over the step, to second order.
 ///
 /// Source: Silling et al., J. Elasticity 88 (2007) 151; Silling, Comput. Methods Appl. Mech.
 /// Engrg. 322 (2017) 42. Differs: the stiffness of the stabilisation is chi n G_i/m_i of the
@@ -73,7 +78,7 @@ class Correspondence : public BondNetwork<Dim> {
     void sum_outer(std::span<const Vec<Dim>> z, std::vector<NodeForce>& sum) const;
     Mat<Dim> gradient(const NodeForce& sum, int i) const;
     NodeForce node_force(const Mat<Dim>& P, const Mat<Dim>& F, double g, int i) const;
-    double softening(double alpha) const;  ///< secant over elastic shear modulus
+    double softening(double alpha) const;  ///< G_i/G
     void add_bond_forces(std::span<const Vec<Dim>> z, const std::vector<NodeForce>& node, double factor,
                          std::span<Vec<Dim>> f) const;
     template <class Visit>

@@ -174,6 +174,24 @@ TEST_SUITE("particles") {
         CHECK(largest_norm<2>(g) < 1e-12 * largest_norm<2>(f));
     }
 
+    TEST_CASE("Correspondence: the stabilisation falls with the secant modulus to a fiftieth, not below") {
+        const Shape<2> shape = make_test_shape<2>();
+        const Material material = make_plastic(2, 1e4, 1e3);
+        const Correspondence<2> model(shape, material);
+        Field<2> x(shape.X.begin(), shape.X.end());
+        for (std::size_t i = 0; i < x.size(); i += 2) x[i][0] += 1e-4 * shape.radius;
+        const auto energy = [&](double alpha) {
+            std::vector<PlasticStrain<2>> plastic(x.size());
+            for (PlasticStrain<2>& strain : plastic) strain.alpha = alpha;
+            return model.elastic_energy({1.0, x, {}, {}, {}, {}, 1.0, {}, plastic});
+        };
+        const double secant = 1.0 / (1.0 + 3.0 * material.shear_modulus * 0.01 / (1e4 + 1e3 * 0.01));
+        const double whole = energy(0.0) - energy(100.0);
+        CHECK(whole > 0.01 * energy(0.0));
+        CHECK(energy(1000.0) == energy(100.0));
+        CHECK((energy(0.0) - energy(0.01)) / whole == doctest::Approx((1.0 - secant) / 0.98).epsilon(1e-9));
+    }
+
     TEST_CASE("Correspondence: long waves have the speeds of the continuum, no wave is without stiffness") {
         const Shape<2> shape = make_lattice<2>({33, 33}, 0.01);
         Material material = make_plastic(2);
