@@ -3,7 +3,8 @@
 // Inside a grain nothing changes when it breaks: bonds, forces and arrays stay as they were. Contact sees
 // arrays of its own, in which the particles of each piece stand next to each other: a piece is then a grain
 // like any other (its shape: piece_shape.hpp), and no rule has to know of pieces. Positions and velocities
-// are copied there in every step and velocities back; as long as all grains are whole nothing is copied.
+// are copied there in every step and velocities back; as long as all grains are in one piece nothing is
+// copied. Arrays are made anew when a piece comes apart; a bond that breaks inside one only adds to `cracks`.
 //
 // Pieces of fewer particles than a bound are debris: too small to have a surface on the grid. They belong to
 // no body; loose_contact.hpp moves them.
@@ -33,7 +34,8 @@ class ContactBodies {
     /// `debris`: pieces of fewer particles than this are debris.
     explicit ContactBodies(int debris) : debris_below_(debris) {}
 
-    /// What has become of a grain: piece [n] as of particles/pieces.hpp, and all its broken bonds.
+    /// What has become of a grain: piece [n] as of particles/pieces.hpp (empty: as before), and all its
+    /// broken bonds.
     void set_pieces(const ContactScene<Dim>& scene, int grain, std::span<const int> piece,
                     std::span<const BrokenBond> broken);
     /// Whether bodies have changed since the last call.
@@ -65,19 +67,32 @@ class ContactBodies {
     };
     struct Torn {
         int grain = -1;
-        std::vector<int> piece;
+        std::vector<int> piece;          ///< empty: all in one
         std::vector<Piece> pieces;       ///< empty: all in one
         std::vector<BrokenBond> cracks;  ///< inside pieces
+        bool in_pieces() const { return !pieces.empty(); }
+    };
+    /// Particles [first, last): all of whole grains, which stand where they stood, or all of torn ones.
+    struct Run {
+        int first, last;
+        bool moved;
     };
     Torn& torn(int grain);
-    void make(const ContactScene<Dim>& grains);
+    void make_bodies(const ContactScene<Dim>& grains);
+    void make_cracks(const ContactScene<Dim>& grains);
+    template <class T>
+    void pick(std::span<const T> from, std::vector<T>& to) const;
 
     int debris_below_;
     std::vector<Torn> torn_;  // by grain
     std::vector<std::unique_ptr<Shape<Dim>>> old_shapes_;
-    bool changed_ = false, outdated_ = false;
+    bool changed_ = false;
+    bool bodies_outdated_ = true, cracks_outdated_ = true;
 
+    bool in_order_ = true;  // no grain is in pieces
     std::vector<int> order_;
+    std::vector<int> place_of_;  // the inverse of order_
+    std::vector<Run> runs_;
     std::vector<Grain<Dim>> bodies_;
     std::vector<int> grain_of_;  // [n_bodies + pieces of debris]
     std::vector<int> body_of_;   // [n]

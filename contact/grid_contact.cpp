@@ -59,15 +59,18 @@ const ContactReport<Dim>& GridContact<Dim>::add_impulses(const ContactScene<Dim>
         apply_rule(scene, trial);
         return report_;
     }
+    ContactTrial<Dim> moved = trial;
+    if (!moves_with_grid()) moved.drift = {};
     const ContactScene<Dim> of_bodies = bodies_.gather(scene);
-    const ContactTrial<Dim> their_trial = bodies_.gather(trial);
+    const ContactTrial<Dim> their_trial = bodies_.gather(moved);
+    loose_.find(bodies_, of_bodies, their_trial);
     apply_rule(of_bodies, their_trial);
     received_.assign(scene.grains.size(), Vec<Dim>::Zero());
     for (std::size_t b = 0; b < of_bodies.grains.size(); ++b)
         received_[bodies_.grain_of(static_cast<int>(b))] += report_.grain_impulse[b];
     std::swap(received_, report_.grain_impulse);
-    loose_.add_impulses(bodies_, of_bodies, their_trial, trial.v, report_);
-    bodies_.give_back(trial);
+    loose_.add_impulses(bodies_, of_bodies, their_trial, report_);
+    bodies_.give_back(moved);
     return report_;
 }
 

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+
+#include "grid/parallel.hpp"
 
 namespace quern {
 
@@ -14,6 +17,9 @@ constexpr double skin = 3.0;
 constexpr double faster_than_fastest = 4.0;
 /// Contact may make a body this much faster than what moves without it.
 constexpr double faster_by_contact = 2.0;
+/// Fewer pairs stay on one thread, fewer rows are one island: finding islands would cost more than it saves.
+constexpr std::size_t few = 1024;
+constexpr std::size_t block = 256;
 
 }  // namespace
 
@@ -25,7 +31,7 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
         for (const double volume : scene.volume) radius_.push_back(0.5 * std::pow(volume, 1.0 / Dim));
     }
     searched_ = true;
-    if (bodies.debris().empty()) {
+    if (bodies.debris().empty() && bodies.in_pieces().empty()) {
         search_at_ = std::numeric_limits<double>::infinity();
         return;
     }
@@ -33,9 +39,9 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
     for (const LooseParticle& loose : bodies.debris())
         of_debris = std::max(of_debris, radius_[loose.particle]);
     for (const double radius : radius_) of_all = std::max(of_all, radius);
-    const double margin = skin * of_debris;
+    const double margin = skin * (bodies.debris().empty() ? of_all : of_debris);
     const int n_bodies = static_cast<int>(scene.grains.size());
-    cells_.sort(scene.x, of_debris + of_all + margin, &grid_);
+    if (!bodies.debris().empty()) cells_.sort(scene.x, of_debris + of_all + margin, &grid_);
     for (const LooseParticle& loose : bodies.debris()) {
         const int p = loose.particle;
         cells_.visit_near(scene.x[p], [&](int q) {
@@ -49,19 +55,27 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
     std::sort(near_.begin(), near_.end(), [](const CrackPair& a, const CrackPair& b) {
         return std::pair(a.first, a.second) < std::pair(b.first, b.second);
     });
+    const auto add_walls = [&](int p, double range) {
+        for (std::size_t w = 0; w < scene.walls.size(); ++w)
+            if (scene.walls[w].distance(scene.x[p]) < range + margin)
+                near_.push_back({p, -1 - static_cast<int>(w), range});
+    };
+    for (const LooseParticle& loose : bodies.debris()) add_walls(loose.particle, radius_[loose.particle]);
+    for (const int p : bodies.in_pieces()) add_walls(p, 0.0);
     search_at_ = scene.travelled + 0.5 * margin;
 }
 
+/// Whether the two can touch in this step.
 template <int Dim>
-void LooseContact<Dim>::add_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, int p, int q,
-                                double range) {
-    Row row{p, q, Vec<Dim>::Zero(), scene.mass[p], 0.0};
-    const double reach = faster_than_fastest * trial.largest_speed * trial.dt;
+bool LooseContact<Dim>::make_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial,
+                                 const CrackPair& near, Row& row) const {
+    const int p = near.first, q = near.second;
+    const double range = near.range, reach = faster_than_fastest * trial.largest_speed * trial.dt;
     double gap = -range;
     if (q >= 0) {
         const Vec<Dim> d = nearest_(scene.x[p], scene.x[q]);
         const double squared = d.squaredNorm();
-        if (!(squared > 0.0) || squared > (range + reach) * (range + reach)) return;
+        if (!(squared > 0.0) || squared > (range + reach) * (range + reach)) return false;
         const double distance = std::sqrt(squared);
         row.n = d / distance;
         row.mass = scene.mass[p] * scene.mass[q] / (scene.mass[p] + scene.mass[q]);
@@ -69,37 +83,93 @@ void LooseContact<Dim>::add_row(const ContactScene<Dim>& scene, const ContactTri
     } else {
         const Wall<Dim>& wall = scene.walls[-1 - q];
         row.n = wall.normal;
+        row.mass = scene.mass[p];
         gap += wall.distance(scene.x[p]);
     }
-    if (gap > reach) return;
+    if (gap > reach) return false;
+    row.p = p;
+    row.q = q;
     row.gap_speed = std::max(gap, 0.0) / trial.dt;
-    rows_.push_back(row);
-    touched_.push_back(p);
-    if (q >= 0) touched_.push_back(q);
+    row.J = 0.0;
+    row.J_t.setZero();
+    return true;
 }
 
 template <int Dim>
-void LooseContact<Dim>::make_rows(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                                  const ContactTrial<Dim>& trial) {
+void LooseContact<Dim>::find(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+                             const ContactTrial<Dim>& trial) {
+    const double ahead = faster_by_contact * trial.dt * trial.largest_speed;
+    if (!searched_ || !(scene.travelled + ahead < search_at_)) search(bodies, scene);
+    const std::size_t n_cracks = bodies.cracks().size(), n = n_cracks + near_.size();
+    found_.resize(n);
+    parallel::for_each((n + block - 1) / block,
+                       [&](std::size_t b) {
+                           for (std::size_t k = b * block, end = std::min(n, k + block); k < end; ++k) {
+                               const CrackPair& near =
+                                   k < n_cracks ? bodies.cracks()[k] : near_[k - n_cracks];
+                               if (!make_row(scene, trial, near, found_[k])) found_[k].mass = 0.0;
+                           }
+                       },
+                       few / block);
     rows_.clear();
     touched_.clear();
-    for (const CrackPair& pair : bodies.cracks()) add_row(scene, trial, pair.first, pair.second, pair.range);
-    for (const CrackPair& pair : near_) add_row(scene, trial, pair.first, pair.second, pair.range);
-    for (const LooseParticle& loose : bodies.debris())
-        for (std::size_t w = 0; w < scene.walls.size(); ++w)
-            add_row(scene, trial, loose.particle, -1 - static_cast<int>(w), radius_[loose.particle]);
-    for (const int p : bodies.in_pieces())
-        for (std::size_t w = 0; w < scene.walls.size(); ++w)
-            add_row(scene, trial, p, -1 - static_cast<int>(w), 0.0);
+    for (const Row& row : found_) {
+        if (row.mass == 0.0) continue;
+        rows_.push_back(row);
+        touched_.push_back(row.p);
+        if (row.q >= 0) touched_.push_back(row.q);
+    }
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
-    v_after_grid_.clear();
-    for (const int p : touched_) v_after_grid_.push_back(trial.v[p]);
+    v_trial_.clear();
+    for (const int p : touched_) v_trial_.push_back(trial.v[p]);
+    make_islands(scene.x.size());
+}
+
+/// Islands in the order of their first rows, rows in theirs.
+template <int Dim>
+void LooseContact<Dim>::make_islands(std::size_t n_particles) {
+    islands_.clear();
+    in_islands_.resize(rows_.size());
+    if (rows_.size() < few) {
+        std::iota(in_islands_.begin(), in_islands_.end(), 0);
+        if (!rows_.empty()) islands_.push_back({0, static_cast<int>(rows_.size())});
+        return;
+    }
+    root_.resize(n_particles);
+    for (const int p : touched_) root_[p] = p;
+    const auto root = [&](int p) {
+        while (root_[p] != p) p = root_[p] = root_[root_[p]];
+        return p;
+    };
+    for (const Row& row : rows_)
+        if (row.q >= 0) {
+            const int r = root(row.p), s = root(row.q);
+            root_[std::max(r, s)] = std::min(r, s);
+        }
+    island_of_.assign(n_particles, -1);
+    for (const Row& row : rows_) {
+        int& island = island_of_[root(row.p)];
+        if (island < 0) {
+            island = static_cast<int>(islands_.size());
+            islands_.push_back({0, 0});
+        }
+        ++islands_[island].last;
+    }
+    int first = 0;
+    for (Island& island : islands_) {
+        const int count = island.last;
+        island.first = island.last = first;
+        first += count;
+    }
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+        in_islands_[islands_[island_of_[root(rows_[k].p)]].last++] = static_cast<int>(k);
 }
 
 /// Returns by how much the impulse of a row has changed.
 template <int Dim>
-double LooseContact<Dim>::update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row) {
+double LooseContact<Dim>::update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial,
+                                 Row& row) const {
     const auto give = [&](int p, const Vec<Dim>& J) {
         const Vec<Dim> dv = J / scene.mass[p];
         trial.v[p] += dv;
@@ -134,12 +204,11 @@ double LooseContact<Dim>::update(const ContactScene<Dim>& scene, const ContactTr
 /// of the grid has booked for a particle is completed to (m/2) (v - v*).(v_before + v), v* before contact.
 template <int Dim>
 void LooseContact<Dim>::book(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                             const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
-                             ContactReport<Dim>& report) const {
+                             const ContactTrial<Dim>& trial, ContactReport<Dim>& report) const {
     double work = 0.0, by_walls = 0.0, by_friction = 0.0;
     for (std::size_t k = 0; k < touched_.size(); ++k) {
         const int p = touched_[k];
-        const Vec<Dim>&before = trial.v_before[p], &star = v_trial[bodies.order()[p]];
+        const Vec<Dim>&before = trial.v_before[p], &star = v_trial_[k];
         const auto done = [&](const Vec<Dim>& v) { return (v - star).dot(before + v); };
         work += 0.5 * scene.mass[p] * (done(trial.v[p]) - done(v_after_grid_[k]));
     }
@@ -165,27 +234,34 @@ void LooseContact<Dim>::book(const ContactBodies<Dim>& bodies, const ContactScen
 }
 
 template <int Dim>
+void LooseContact<Dim>::sweep(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, bool forwards,
+                              Island& island) {
+    island.change = island.total = 0.0;
+    for (int k = 0, n = island.last - island.first; k < n; ++k) {
+        Row& row = rows_[in_islands_[forwards ? island.first + k : island.last - 1 - k]];
+        island.change += update(scene, trial, row);
+        island.total += row.J;
+    }
+}
+
+template <int Dim>
 void LooseContact<Dim>::add_impulses(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                                     const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
-                                     ContactReport<Dim>& report) {
-    const double ahead = faster_by_contact * trial.dt * trial.largest_speed;
-    if (!searched_ || !(scene.travelled + ahead < search_at_)) search(bodies, scene);
-    make_rows(bodies, scene, trial);
+                                     const ContactTrial<Dim>& trial, ContactReport<Dim>& report) {
+    v_after_grid_.clear();
+    for (const int p : touched_) v_after_grid_.push_back(trial.v[p]);
     bool converged = rows_.empty();
-    for (int sweep = 0; sweep < options_.max_sweeps && !converged; ++sweep) {
+    for (int k = 0; k < options_.max_sweeps && !converged; ++k) {
+        parallel::for_each(islands_.size(),
+                           [&](std::size_t i) { sweep(scene, trial, k % 2 == 0, islands_[i]); });
         double change = 0.0, total = 0.0;
-        const auto visit = [&](Row& row) {
-            change += update(scene, trial, row);
-            total += row.J;
-        };
-        if (sweep % 2 == 0)
-            std::for_each(rows_.begin(), rows_.end(), visit);
-        else
-            std::for_each(rows_.rbegin(), rows_.rend(), visit);
+        for (const Island& island : islands_) {
+            change += island.change;
+            total += island.total;
+        }
         converged = change <= options_.tolerance * total;
     }
     report.converged = report.converged && converged;
-    book(bodies, scene, trial, v_trial, report);
+    book(bodies, scene, trial, report);
 }
 
 template <int Dim>

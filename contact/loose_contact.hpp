@@ -39,11 +39,12 @@ class LooseContact {
     /// Bodies are others than before: search anew.
     void forget() { searched_ = false; }
 
-    /// Changes trial.v and adds to the report, whose impulses are those of grains. `scene` and `trial` are
-    /// those of the bodies, after the rule of the grid; v_trial [n]: velocities before it, of the grains.
+    /// What can touch in this step, before the rule of the grid. `scene` and `trial` are those of the bodies.
+    void find(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
+              const ContactTrial<Dim>& trial);
+    /// After the rule: changes trial.v and adds to the report, whose impulses are those of grains.
     void add_impulses(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                      const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
-                      ContactReport<Dim>& report);
+                      const ContactTrial<Dim>& trial, ContactReport<Dim>& report);
     /// Appends the pairs of the last step that press; of bodies and pieces of debris, as ContactBodies counts
     /// them.
     void list_contacts(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
@@ -52,21 +53,26 @@ class LooseContact {
   private:
     /// Two particles, or one and a wall (q = -1 - wall).
     struct Row {
-        int p, q;
-        Vec<Dim> n;  ///< from p to q; out of the wall
-        double mass, gap_speed;
+        int p = 0, q = 0;
+        Vec<Dim> n = Vec<Dim>::Zero();  ///< from p to q; out of the wall
+        double mass = 0.0, gap_speed = 0.0;
         double J = 0.0;
         Vec<Dim> J_t = Vec<Dim>::Zero();
     };
+    /// Rows in_islands_[first, last), which share no particle with others.
+    struct Island {
+        int first, last;
+        double change = 0.0, total = 0.0;  ///< of the impulses, in a sweep [N s]
+    };
 
     void search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene);
-    void make_rows(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                   const ContactTrial<Dim>& trial);
-    void add_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, int p, int q, double range);
-    double update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row);
+    bool make_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, const CrackPair& near,
+                  Row& row) const;
+    void make_islands(std::size_t n_particles);
+    void sweep(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, bool forwards, Island& island);
+    double update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row) const;
     void book(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-              const ContactTrial<Dim>& trial, std::span<const Vec<Dim>> v_trial,
-              ContactReport<Dim>& report) const;
+              const ContactTrial<Dim>& trial, ContactReport<Dim>& report) const;
 
     CartesianGrid<Dim> grid_;
     NearestImage<Dim> nearest_;
@@ -77,13 +83,17 @@ class LooseContact {
     // Of the last search.
     bool searched_ = false;
     double search_at_ = 0.0;       // of `travelled` [m]
-    std::vector<CrackPair> near_;  // pairs with debris in them, ascending
+    std::vector<CrackPair> near_;  // pairs with debris in them, ascending; then what is near walls
     PointCells<Dim> cells_;
 
     // Of this step.
+    std::vector<Row> found_;  // [cracks and near_], mass 0: do not touch
     std::vector<Row> rows_;
-    std::vector<int> touched_;            // particles with rows, ascending
-    std::vector<Vec<Dim>> v_after_grid_;  // of those
+    std::vector<int> in_islands_;  // rows, island by island
+    std::vector<Island> islands_;
+    std::vector<int> touched_;                      // particles with rows, ascending
+    std::vector<Vec<Dim>> v_trial_, v_after_grid_;  // of those, before and after the rule of the grid
+    std::vector<int> root_, island_of_;             // [n] while islands are made
 };
 
 }  // namespace quern

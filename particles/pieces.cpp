@@ -25,7 +25,28 @@ int find_pieces(const Bonds<Dim>& bonds, const BondBits& alive, std::vector<int>
     return n_pieces;
 }
 
+template <int Dim>
+bool joined_by_two(const Bonds<Dim>& bonds, const BondBits& alive, int i, int j) {
+    if (alive.empty()) return true;
+    const std::span<const Neighbor> of_i = bonds.family_of(i), of_j = bonds.family_of(j);
+    // Families are sorted by node.
+    std::size_t a = 0, b = 0;
+    while (a < of_i.size() && b < of_j.size()) {
+        if (of_i[a].node < of_j[b].node) {
+            ++a;
+        } else if (of_i[a].node > of_j[b].node) {
+            ++b;
+        } else {
+            if (alive[of_i[a].bond] && alive[of_j[b].bond]) return true;
+            ++a, ++b;
+        }
+    }
+    return false;
+}
+
 template int find_pieces<2>(const Bonds<2>&, const BondBits&, std::vector<int>&);
 template int find_pieces<3>(const Bonds<3>&, const BondBits&, std::vector<int>&);
+template bool joined_by_two<2>(const Bonds<2>&, const BondBits&, int, int);
+template bool joined_by_two<3>(const Bonds<3>&, const BondBits&, int, int);
 
 }  // namespace quern

@@ -14,4 +14,9 @@ namespace quern {
 template <int Dim>
 int find_pieces(const Bonds<Dim>& bonds, const BondBits& alive, std::vector<int>& piece);
 
+/// Whether two intact bonds, one at each, join the nodes i and j. If they do so for every bond that has
+/// broken since find_pieces, the pieces are the same: each bond of an old path has such a detour.
+template <int Dim>
+bool joined_by_two(const Bonds<Dim>& bonds, const BondBits& alive, int i, int j);
+
 }  // namespace quern

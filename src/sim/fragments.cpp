@@ -1,6 +1,7 @@
 #include "src/sim/fragments.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 
 #include "particles/pieces.hpp"
@@ -16,6 +17,21 @@ std::vector<int> pieces_of(const Scene<Dim>& scene, int g) {
     std::visit([&](const auto& model) { find_pieces<Dim>(model.bonds(), scene.view(g).alive, piece); },
                scene.group_of(g).model);
     return piece;
+}
+
+/// Whether bonds that are broken now, but not in `known`, can have parted what was one piece.
+template <int Dim>
+bool may_have_parted(const Scene<Dim>& scene, int g, const std::vector<BrokenBond>& known,
+                     const std::vector<BrokenBond>& broken) {
+    std::vector<BrokenBond> fresh;
+    std::set_difference(broken.begin(), broken.end(), known.begin(), known.end(), std::back_inserter(fresh));
+    return std::visit(
+        [&](const auto& model) {
+            return !std::all_of(fresh.begin(), fresh.end(), [&](const BrokenBond& bond) {
+                return joined_by_two<Dim>(model.bonds(), scene.view(g).alive, bond.first, bond.second);
+            });
+        },
+        scene.group_of(g).model);
 }
 
 /// Identities of the pieces of a grain.
@@ -48,7 +64,8 @@ void name_pieces(Scene<Dim>& scene, const StepContext<Dim>& now, int g, const st
     for (int i = 0; i < grain.count; ++i) name[i] = own[static_cast<std::size_t>(piece[i])];
 }
 
-/// Tells contact; returns the energy with which springs of new cracks begin [J; 2D: J/m].
+/// Tells contact (no piece: pieces as before); returns the energy with which springs of new cracks begin [J;
+/// 2D: J/m].
 template <int Dim>
 double tell_contact(Scene<Dim>& scene, int g, const std::vector<int>& piece, std::vector<BrokenBond> broken) {
     if (!scene.contact) return 0.0;
@@ -81,6 +98,7 @@ void start_fragments(Scene<Dim>& scene, int debris_below) {
     Fragments& fragments = scene.fragments;
     fragments.debris_below = debris_below;
     fragments.broken.assign(scene.grains.size(), 0);
+    fragments.known.resize(scene.grains.size());
     fragments.of_particle.resize(scene.particles.x.size());
     for (const int g : scene.grain_of_id) {
         const Grain<Dim>& grain = scene.grains[g];
@@ -97,9 +115,13 @@ void update_fragments(Scene<Dim>& scene, StepContext<Dim>& now) {
         if (!scene.torn[g]) continue;
         scene.torn[g] = 0;
         const int grain = static_cast<int>(g);
-        const std::vector<int> piece = pieces_of(scene, grain);
-        name_pieces(scene, now, grain, piece);
         std::vector<BrokenBond> broken = scene.broken_bonds(grain);
+        std::vector<int> piece;
+        if (may_have_parted(scene, grain, scene.fragments.known[g], broken)) {
+            piece = pieces_of(scene, grain);
+            name_pieces(scene, now, grain, piece);
+        }
+        scene.fragments.known[g] = broken;
         scene.fragments.broken[g] = static_cast<std::int64_t>(broken.size());
         // What the springs of a new crack begin with comes from what its bonds have set free.
         now.ledger.past.fracture -= tell_contact(scene, grain, piece, std::move(broken));
@@ -111,7 +133,8 @@ void recall_broken_bonds(Scene<Dim>& scene) {
     for (std::size_t k = 0; k < scene.fragments.broken.size(); ++k) {
         if (scene.fragments.broken[k] == 0) continue;
         const int g = static_cast<int>(k);
-        tell_contact(scene, g, pieces_of(scene, g), scene.broken_bonds(g));
+        scene.fragments.known[k] = scene.broken_bonds(g);
+        tell_contact(scene, g, pieces_of(scene, g), scene.fragments.known[k]);
     }
 }
 

@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact/contact.hpp"
+
 namespace quern {
 
 struct Fragment {
@@ -22,10 +24,11 @@ struct Fragment {
 
 /// Of all grains; empty where none can break.
 struct Fragments {
-    std::vector<Fragment> all;              ///< by number
-    std::vector<std::int32_t> of_particle;  ///< [n]
-    std::vector<std::int64_t> broken;       ///< [n_grains] bonds, of Scene::grains
-    int debris_below = 0;                   ///< particles
+    std::vector<Fragment> all;                   ///< by number
+    std::vector<std::int32_t> of_particle;       ///< [n]
+    std::vector<std::int64_t> broken;            ///< [n_grains] bonds, of Scene::grains
+    std::vector<std::vector<BrokenBond>> known;  ///< [n_grains] broken when pieces were last found, ascending
+    int debris_below = 0;                        ///< particles
 
     bool is_debris(const Fragment& fragment) const { return fragment.particles < debris_below; }
     std::int64_t n_fragments() const;  ///< that are no debris
@@ -42,7 +45,8 @@ struct StepContext;
 template <int Dim>
 void start_fragments(Scene<Dim>& scene, int debris_below);
 
-/// After bonds have broken: fragments of the grains that are torn, and what contact has to know of it.
+/// After bonds have broken: fragments of the grains that are torn, and what contact has to know of it. Pieces
+/// are looked for only if a new broken bond has no detour over a third node (joined_by_two).
 template <int Dim>
 void update_fragments(Scene<Dim>& scene, StepContext<Dim>& now);
 

@@ -2,8 +2,10 @@
 #include "src/sim/fragments.hpp"
 
 #include <cmath>
+#include <random>
 
 #include "grid/parallel.hpp"
+#include "particles/pieces.hpp"
 #include "src/sim/checkpoint.hpp"
 #include "src/sim/observe.hpp"
 #include "tests/sim/decks.hpp"
@@ -44,6 +46,11 @@ struct Stepped {
     /// Breaks all bonds of grain 0 between nodes of different sides.
     template <class Side>
     void cut(Side&& side) {
+        cut_bonds([&](int i, int j) { return side(X(i)) != side(X(j)); });
+    }
+    /// Breaks the bonds (i, j) of grain 0 that `breaks` names.
+    template <class Breaks>
+    void cut_bonds(Breaks&& breaks) {
         const BondBytes& bytes = scene->bond_bytes[0];
         const std::span<std::uint8_t> alive = scene->alive_of(0);
         std::visit(
@@ -51,7 +58,7 @@ struct Stepped {
                 const Bonds<2>& bonds = model.bonds();
                 for (int i = 0; i < bonds.n_nodes(); ++i)
                     for (int b = bonds.first[i]; b < bonds.first[i + 1]; ++b)
-                        if (side(X(i)) != side(X(bonds.partner[b])))
+                        if (breaks(i, bonds.partner[b]))
                             alive[static_cast<std::size_t>(bytes.place ? bytes.place[b] : b)] &=
                                 static_cast<std::uint8_t>(~(1U << bytes.bit));
             },
@@ -180,6 +187,31 @@ TEST_CASE("Fragments: the larger part stays the parent, later ones are born with
     CHECK(rows[1].position[0] == doctest::Approx(3.03 + 0.75));
     CHECK(rows[2].damage > 0.1);
     CHECK(rows[2].damage < 0.5);
+}
+
+TEST_CASE("Fragments: bonds that break a few at a time leave the fragments that a search at once finds") {
+    Stepped bar(one_bar, {});
+    std::mt19937 random(11);
+    std::size_t most = 1;
+    for (int round = 0; round < 25; ++round) {
+        bar.cut_bonds([&](int, int) { return random() % 100 < 9; });
+        const Fragments& fragments = bar.scene->fragments;
+        std::vector<int> piece;
+        int n = 0;
+        std::visit(
+            [&](const auto& model) { n = find_pieces<2>(model.bonds(), bar.scene->view(0).alive, piece); },
+            bar.scene->groups[0].model);
+        CHECK(fragments.all.size() == static_cast<std::size_t>(n));
+        CHECK(fragments.broken[0] == static_cast<std::int64_t>(bar.scene->broken_bonds(0).size()));
+        std::vector<int> of_piece(static_cast<std::size_t>(n), -1);
+        for (std::size_t p = 0; p < piece.size(); ++p) {
+            int& name = of_piece[static_cast<std::size_t>(piece[p])];
+            if (name < 0) name = fragments.of_particle[p];
+            CHECK(name == fragments.of_particle[p]);
+        }
+        most = std::max(most, fragments.all.size());
+    }
+    CHECK(most > 10);  // measured 24, of 120 particles
 }
 
 TEST_CASE("Fragments: a scene that is loaded goes on with the same bits, on one thread or two") {
