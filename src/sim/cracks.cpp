@@ -122,26 +122,11 @@ void set_no_fail(const Deck& deck, Scene<Dim>& scene) {
     }
 }
 
-template <int Dim>
-void hand_over_cracks(Scene<Dim>& scene) {
-    auto* const pairs = scene.contact ? std::get_if<NodePairContact<Dim>>(&*scene.contact) : nullptr;
-    if (pairs == nullptr || scene.torn.empty() || scene.n_cut == 0) return;
-    const ContactScene<Dim> view{scene.grains,           scene.particles.x, scene.particles.mass,
-                                 scene.particles.volume, scene.walls,       &scene.friction,
-                                 scene.travelled};
-    for (std::size_t g = 0; g < scene.grains.size(); ++g) {
-        std::vector<BrokenBond> cut = scene.broken_bonds(static_cast<int>(g));
-        if (!cut.empty()) pairs->set_broken(view, static_cast<int>(g), std::move(cut));
-    }
-}
-
 template void mark_cracked(const Deck&, Scene<2>&);
 template void mark_cracked(const Deck&, Scene<3>&);
 template void set_cracks(const Deck&, Scene<2>&);
 template void set_cracks(const Deck&, Scene<3>&);
 template void set_no_fail(const Deck&, Scene<2>&);
 template void set_no_fail(const Deck&, Scene<3>&);
-template void hand_over_cracks(Scene<2>&);
-template void hand_over_cracks(Scene<3>&);
 
 }  // namespace quern

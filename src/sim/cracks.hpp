@@ -7,7 +7,7 @@
 //     sets no energy free and is not counted as fracture
 //     is no damage: `damage` counts what breaks afterwards, over the bonds that cracks have left
 //     is no part of damage_z
-//     repels itself from the other side, where contact is between nodes
+//     repels itself from the other side; a grain cut in two is two fragments (fragments.hpp)
 //
 // On periodic axes cracks and regions are compared with places as the deck gives them; they do not repeat.
 #pragma once
@@ -27,9 +27,5 @@ void set_cracks(const Deck& deck, Scene<Dim>& scene);
 /// Throws InputError for a region without particles.
 template <int Dim>
 void set_no_fail(const Deck& deck, Scene<Dim>& scene);
-
-/// Tells contact which bonds the cracks have cut.
-template <int Dim>
-void hand_over_cracks(Scene<Dim>& scene);
 
 }  // namespace quern

@@ -36,7 +36,7 @@ bool may_have_parted(const Scene<Dim>& scene, int g, const std::vector<BrokenBon
 
 /// Identities of the pieces of a grain.
 template <int Dim>
-void name_pieces(Scene<Dim>& scene, const StepContext<Dim>& now, int g, const std::vector<int>& piece) {
+void name_pieces(Scene<Dim>& scene, std::int64_t step, double time, int g, const std::vector<int>& piece) {
     Fragments& fragments = scene.fragments;
     const Grain<Dim>& grain = scene.grains[g];
     std::int32_t* name = fragments.of_particle.data() + grain.first;
@@ -57,7 +57,7 @@ void name_pieces(Scene<Dim>& scene, const StepContext<Dim>& now, int g, const st
     for (std::size_t k = 0; k < n_pieces; ++k) {
         if (own[k] < 0) {
             own[k] = static_cast<std::int32_t>(fragments.all.size());
-            fragments.all.push_back({old[k], grain.id, 0, now.step, now.time});
+            fragments.all.push_back({old[k], grain.id, 0, step, time});
         }
         fragments.all[static_cast<std::size_t>(own[k])].particles = size[k];
     }
@@ -98,6 +98,7 @@ void start_fragments(Scene<Dim>& scene, int debris_below) {
     Fragments& fragments = scene.fragments;
     fragments.debris_below = debris_below;
     fragments.broken.assign(scene.grains.size(), 0);
+    fragments.cut.assign(scene.grains.size(), 0);
     fragments.known.resize(scene.grains.size());
     fragments.of_particle.resize(scene.particles.x.size());
     for (const int g : scene.grain_of_id) {
@@ -110,6 +111,21 @@ void start_fragments(Scene<Dim>& scene, int debris_below) {
 }
 
 template <int Dim>
+void hand_over_cracks(Scene<Dim>& scene) {
+    if (scene.n_cut == 0) return;
+    for (std::size_t k = 0; k < scene.grains.size(); ++k) {
+        const int g = static_cast<int>(k);
+        std::vector<BrokenBond>& cut = scene.fragments.known[k];
+        cut = scene.broken_bonds(g);
+        scene.fragments.cut[k] = static_cast<std::int64_t>(cut.size());
+        if (cut.empty()) continue;
+        const std::vector<int> piece = pieces_of(scene, g);
+        name_pieces(scene, 0, 0.0, g, piece);
+        tell_contact(scene, g, piece, cut);
+    }
+}
+
+template <int Dim>
 void update_fragments(Scene<Dim>& scene, StepContext<Dim>& now) {
     for (std::size_t g = 0; g < scene.torn.size(); ++g) {
         if (!scene.torn[g]) continue;
@@ -119,10 +135,10 @@ void update_fragments(Scene<Dim>& scene, StepContext<Dim>& now) {
         std::vector<int> piece;
         if (may_have_parted(scene, grain, scene.fragments.known[g], broken)) {
             piece = pieces_of(scene, grain);
-            name_pieces(scene, now, grain, piece);
+            name_pieces(scene, now.step, now.time, grain, piece);
         }
         scene.fragments.known[g] = broken;
-        scene.fragments.broken[g] = static_cast<std::int64_t>(broken.size());
+        scene.fragments.broken[g] = static_cast<std::int64_t>(broken.size()) - scene.fragments.cut[g];
         // What the springs of a new crack begin with comes from what its bonds have set free.
         now.ledger.past.fracture -= tell_contact(scene, grain, piece, std::move(broken));
     }
@@ -140,6 +156,8 @@ void recall_broken_bonds(Scene<Dim>& scene) {
 
 template void start_fragments<2>(Scene<2>&, int);
 template void start_fragments<3>(Scene<3>&, int);
+template void hand_over_cracks<2>(Scene<2>&);
+template void hand_over_cracks<3>(Scene<3>&);
 template void update_fragments<2>(Scene<2>&, StepContext<2>&);
 template void update_fragments<3>(Scene<3>&, StepContext<3>&);
 template void recall_broken_bonds<2>(Scene<2>&);

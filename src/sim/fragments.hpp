@@ -1,10 +1,10 @@
 // Fragments: the pieces that grains have come apart into, each with an identity and a history.
 //
-// A grain as placed is the fragment of its number in the deck. When bonds break, the pieces of what was one
-// fragment are found anew (particles/pieces.hpp): the one of most particles stays the old fragment (of equal
-// ones that with the lowest particle), the others are born, numbered on from the number of grains, in the
-// order of the grains and of their lowest particles. Pieces of fewer particles than `contact.debris` are
-// counted as debris.
+// A grain as placed is the fragment of its number in the deck. When bonds break, or cracks of the start cut
+// them, the pieces of what was one fragment are found anew (particles/pieces.hpp): the one of most particles
+// stays the old fragment (of equal ones that with the lowest particle), the others are born, numbered on from
+// the number of grains, in the order of the grains and of their lowest particles. Pieces of fewer particles
+// than `contact.debris` are counted as debris.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ struct Fragment {
 struct Fragments {
     std::vector<Fragment> all;                   ///< by number
     std::vector<std::int32_t> of_particle;       ///< [n]
-    std::vector<std::int64_t> broken;            ///< [n_grains] bonds, of Scene::grains
+    std::vector<std::int64_t> broken;            ///< [n_grains] bonds, of Scene::grains; not those of `cut`
+    std::vector<std::int64_t> cut;               ///< [n_grains] bonds that cracks of the start cross
     std::vector<std::vector<BrokenBond>> known;  ///< [n_grains] broken when pieces were last found, ascending
     int debris_below = 0;                        ///< particles
 
@@ -44,6 +45,11 @@ struct StepContext;
 /// Every grain is one fragment.
 template <int Dim>
 void start_fragments(Scene<Dim>& scene, int debris_below);
+
+/// Fragments of grains that cracks of the start cut, and what contact has to know of these. Once contact is
+/// there.
+template <int Dim>
+void hand_over_cracks(Scene<Dim>& scene);
 
 /// After bonds have broken: fragments of the grains that are torn, and what contact has to know of it. Pieces
 /// are looked for only if a new broken bond has no detour over a third node (joined_by_two).

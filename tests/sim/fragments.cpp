@@ -214,6 +214,39 @@ TEST_CASE("Fragments: bonds that break a few at a time leave the fragments that 
     CHECK(most > 10);  // measured 24, of 120 particles
 }
 
+TEST_CASE("Fragments: a bar cut in two from the start is two at once, and does not close through itself") {
+    const std::string press =
+        "loads: [{region: x < 3.03, acceleration: [20, 0]}, {region: x > 3.03, acceleration: [-20, 0]}]\n";
+    const auto side = [](const Vec<2>& X) { return X[0] > 0.0 ? 1.0 : -1.0; };
+    for (const std::string contact : {"rule: pair", "rule: surface", "method: node_pair", "rule: none"}) {
+        CAPTURE(contact);
+        for (const double top : {1.0, 0.1}) {  // cut through, or to two thirds
+            Stepped bar(replaced(one_bar, "contact: {", "contact: {" + contact + ", ") + press +
+                            fmt::format("cracks: [{{frame: shape, from: [0, -1], to: [0, {}]}}]\n", top),
+                        {});
+            const bool through = top == 1.0;
+            const std::vector<Fragment>& all = bar.scene->fragments.all;
+            CHECK(all.size() == (through ? 2U : 1U));
+            CHECK(all.back().parent == (through ? 0 : -1));
+            CHECK(all.back().particles == (through ? 60 : 120));
+            bar.run(150);
+            CHECK(bar.last.broken_bonds == 0);
+            double nearest = 1.0;  // along the bar, of what stands at the crack
+            for (int p = 0; p < bar.scene->particles.size(); ++p)
+                for (int q = 0; q < bar.scene->particles.size(); ++q)
+                    if (side(bar.X(p)) < side(bar.X(q)) && std::abs(bar.X(p)[1] - bar.X(q)[1]) < 0.01 &&
+                        bar.X(p)[1] < top)
+                        nearest =
+                            std::min(nearest, bar.scene->particles.x[q][0] - bar.scene->particles.x[p][0]);
+            CAPTURE(nearest);
+            if (contact == "rule: none")
+                CHECK(nearest < 0.0);  // measured -0.61 and -0.20
+            else
+                CHECK(nearest > 0.08);  // measured 0.094 to 0.095, bound 0.08
+        }
+    }
+}
+
 TEST_CASE("Fragments: a scene that is loaded goes on with the same bits, on one thread or two") {
     const auto in_pieces = [](const Vec<2>& X) {  // halves, and a corner that is debris
         return X[0] > 0.7 && X[1] > 0.0 ? 2 : X[0] > 0.0 ? 1 : 0;
