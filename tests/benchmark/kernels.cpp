@@ -1,5 +1,7 @@
 #include "tests/benchmark/kernels.hpp"
 
+#include <random>
+
 #include "src/deck/read_deck.hpp"
 
 namespace quern::bench {
@@ -67,7 +69,22 @@ std::shared_ptr<Stage<Dim>> make_stage(const std::string& deck_file,
     return stage;
 }
 
+template <int Dim>
+void stir(Stage<Dim>& stage) {
+    Scene<Dim>& scene = *stage.scene;
+    const double sound = scene.grains.front().shape->dx / stage.now.dt;
+    std::mt19937_64 random(1);
+    for (const Grain<Dim>& grain : scene.grains) {
+        Vec<Dim> v;
+        for (int a = 0; a < Dim; ++a)
+            v[a] = 0.01 * sound * (0x1p-63 * static_cast<double>(random() >> 1) * 2.0 - 1.0);
+        for (int p = grain.first; p < grain.first + grain.count; ++p) scene.particles.v[p] += v;
+    }
+}
+
 template std::shared_ptr<Stage<2>> make_stage<2>(const std::string&, const std::vector<std::string>&, int);
 template std::shared_ptr<Stage<3>> make_stage<3>(const std::string&, const std::vector<std::string>&, int);
+template void stir<2>(Stage<2>&);
+template void stir<3>(Stage<3>&);
 
 }  // namespace quern::bench

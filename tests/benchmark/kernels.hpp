@@ -48,6 +48,10 @@ template <int Dim>
 std::shared_ptr<Stage<Dim>> make_stage(const std::string& deck, const std::vector<std::string>& overrides,
                                        int steps);
 
+/// Throws grains in all directions, at a hundredth of the speed of sound at most: neighbours part and meet.
+template <int Dim>
+void stir(Stage<Dim>& stage);
+
 /// Bonds of one evaluation: bytes and flops of one bond (README.md says what is counted).
 template <int Dim>
 void count_bonds(const Scene<Dim>& scene, bool dilating, Entry& entry);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <nanoflann.hpp>
-#include <random>
 
 #include "tests/benchmark/kernels.hpp"
 #include "tests/benchmark/machine.hpp"
@@ -35,18 +34,6 @@ std::vector<Method> methods() {
             {"grid, surface rule", {"contact.rule=surface"}},
             {"grid, seed rule", {"contact.rule=seed"}},
             {"node pairs", {"contact.method=node_pair"}}};
-}
-
-/// Grains in all directions, at a hundredth of the speed of sound at most: neighbours part and meet.
-void stir(Stage<2>& stage) {
-    Scene<2>& scene = *stage.scene;
-    const double sound = scene.grains.front().shape->dx / stage.now.dt;
-    std::mt19937_64 random(1);
-    const auto number = [&] { return 0x1p-63 * static_cast<double>(random() >> 1) * 2.0 - 1.0; };
-    for (const Grain<2>& grain : scene.grains) {
-        const Vec<2> v = 0.01 * sound * Vec<2>(number(), number());
-        for (int p = grain.first; p < grain.first + grain.count; ++p) scene.particles.v[p] += v;
-    }
 }
 
 /// Points as nanoflann wants to see them.

@@ -22,13 +22,14 @@ constexpr double particle_steps = 2e6;  ///< of a block
 template <int Dim>
 std::vector<Entry> measure(const Problem& problem, int threads) {
     const MemoryPeak memory;
-    const auto stage = make_stage<Dim>(problem.deck, problem.overrides, 20);
+    const auto stage = make_stage<Dim>(problem.deck, problem.overrides, problem.stirred ? 0 : 20);
+    if (problem.stirred) stir(*stage);
     Scene<Dim>& scene = *stage->scene;
     StepContext<Dim>& now = stage->now;
     const double n = scene.particles.size();
-    const bool dilating = std::holds_alternative<Lps<Dim>>(scene.groups.front().model);
+    const bool bonded = !scene.groups.empty();
 
-    Entry step, force, kick_stage, contact, drift_stage;
+    Entry step, force, kick_stage, contact, points, drift_stage;
     step.kind = "problem";
     step.name = problem.name;
     force.kind = kick_stage.kind = contact.kind = drift_stage.kind = "stage";
@@ -36,14 +37,20 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
     kick_stage.name = problem.name + ": kick";
     contact.name = problem.name + ": contact";
     drift_stage.name = problem.name + ": drift";
-    count_bonds(scene, dilating, force);
+    points.kind = "stage";
+    points.name = problem.name + ": points";
+    if (bonded) count_bonds(scene, std::holds_alternative<Lps<Dim>>(scene.groups.front().model), force);
     kick_stage.bytes = 32.0 * Dim + 8.0;  // x, v, internal in, v out; mass
     contact.bytes = 32.0 * Dim + 8.0;     // x, x of the search, v in, v out; mass
     drift_stage.bytes = 24.0 * Dim;       // x, v in, x out
     drift_stage.flops = 2.0 * Dim;
-    for (Entry* e : {&step, &kick_stage, &contact, &drift_stage}) {
+    for (Entry* e : {&step, &kick_stage, &contact, &points, &drift_stage}) {
         e->unit = "particle";
         e->count = n;
+    }
+    if (!bonded) {
+        force.unit = "particle";
+        force.count = n;
     }
 
     double all_seconds = 0.0;
@@ -64,6 +71,7 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
         force.ns.push_back(scale * n / force.count * now.stages.internal_forces);
         kick_stage.ns.push_back(scale * (now.stages.kick + now.stages.loads));
         contact.ns.push_back(scale * now.stages.contact);
+        points.ns.push_back(scale * now.stages.points);
         drift_stage.ns.push_back(scale * now.stages.drift);
     }
     const double cpu_seconds = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
@@ -82,6 +90,7 @@ std::vector<Entry> measure(const Problem& problem, int threads) {
         step.bytes += contact.bytes;
         entries.push_back(contact);
     }
+    if (scene.points) entries.push_back(points);
     entries.push_back(drift_stage);
     entries.front().bytes = force.bytes * force.count / n + step.bytes + kick_stage.bytes + drift_stage.bytes;
     entries.front().flops = force.flops * force.count / n;
@@ -108,6 +117,10 @@ std::vector<Problem> make_problems(const std::string& folder, bool all) {
     list.push_back({"disks 484, seed rule", packing, variant(disks(22, 22), "params.rule=seed")});
     list.push_back({"disks 484, no contact", packing, variant(disks(22, 22), "contact.rule=none")});
     list.push_back({"disks 484, bond-based", packing, variant(disks(22, 22), "params.model=bond_based")});
+    const std::vector<std::string> points{"params.columns=20", "params.rows=20", "params.rings=8",
+                                          "params.model=material_points"};
+    list.push_back({"points 400", packing, points});
+    list.push_back({"points 400, stirred", packing, points, true});
     list.push_back({"compression 502, start", compression + "/compression.yaml", {}});
     list.push_back({"compression 502, packed", compression + "/packed.yaml", {}});
     list.push_back({"spheres 12", spheres, {}});

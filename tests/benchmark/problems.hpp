@@ -9,6 +9,7 @@ struct Problem {
     std::string name;
     std::string deck;
     std::vector<std::string> overrides;
+    bool stirred = false;  ///< grains are thrown at each other first
 };
 
 /// `folder`: where the decks are. `all`: also those that take minutes or gigabytes.
