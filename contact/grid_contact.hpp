@@ -37,6 +37,8 @@ class GridContact {
     void set_pieces(const ContactScene<Dim>& scene, int grain, std::span<const int> piece,
                     std::span<const BrokenBond> broken);
 
+    const GridContactOptions& options() const { return options_; }
+
     /// True if positions move with ContactTrial::drift instead of the particle velocities.
     bool moves_with_grid() const { return options_.coupling == GridCoupling::flip; }
 

@@ -65,13 +65,19 @@ void MaterialPoints<Dim>::compute_forces(const Particles<Dim>& particles, std::v
 }
 
 template <int Dim>
-void MaterialPoints<Dim>::project(const Particles<Dim>& particles, const std::vector<Vec<Dim>>& v,
+void MaterialPoints<Dim>::project(const Particles<Dim>& particles, std::span<const Vec<Dim>> v,
                                   std::vector<Vec<Dim>>& out) {
-    std::copy_n(v.begin(), first_point(), out.begin());
+    out.resize(v.size());
+    if (out.data() != v.data()) std::copy_n(v.begin(), first_point(), out.begin());
     const auto of_grain = [&](const Member& grain, auto& field) {
-        field.scatter_velocities(part(particles.mass, grain.first, grain.count),
-                                 part(v, grain.first, grain.count), options_.order);
-        field.gather_velocities(std::span(out).subspan(grain.first, grain.count));
+        const std::span<const Vec<Dim>> from = v.subspan(grain.first, grain.count);
+        const std::span<Vec<Dim>> to = std::span(out).subspan(grain.first, grain.count);
+        if (std::all_of(from.begin(), from.end(), [](const Vec<Dim>& u) { return u == Vec<Dim>::Zero(); })) {
+            std::fill(to.begin(), to.end(), Vec<Dim>::Zero());
+            return;
+        }
+        field.scatter_velocities(part(particles.mass, grain.first, grain.count), from, options_.order);
+        field.gather_velocities(to);
     };
     std::visit(
         [&](auto& fields) {

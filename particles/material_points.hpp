@@ -40,8 +40,8 @@ class MaterialPoints {
     /// Sets f of the points of all grains [N; 2D: N/m]. Begins a step: what follows is at these positions.
     void compute_forces(const Particles<Dim>& particles, std::vector<Vec<Dim>>& f);
 
-    /// out = P v for points, v for all other particles; both [n] of all particles.
-    void project(const Particles<Dim>& particles, const std::vector<Vec<Dim>>& v, std::vector<Vec<Dim>>& out);
+    /// out = P v for points, v for all other particles; both [n] of all particles, may be the same.
+    void project(const Particles<Dim>& particles, std::span<const Vec<Dim>> v, std::vector<Vec<Dim>>& out);
 
     /// Takes stress and strain from n to n+1 with the velocities of n+1/2, and sets the velocity [m/s] that
     /// moves each particle. Plastic work of the step [J; 2D: J/m].

@@ -88,8 +88,10 @@ void PointField<Dim, functions>::finish(std::span<const double> mass, int order)
     term_ = nodes_;
     for (int k = 1; k < order; ++k) {
         next_.assign(nodes_.size(), Pack::Zero());
-        for (std::size_t p = 0; p < stencils_.size(); ++p)
-            add(stencils_[p], mass[p] * value_at(stencils_[p], term_), next_);
+        for (std::size_t p = 0; p < stencils_.size(); ++p) {
+            const Pack value = value_at(stencils_[p], term_);
+            if ((value != 0.0).any()) add(stencils_[p], mass[p] * value, next_);
+        }
         for (std::size_t a = 0; a < nodes_.size(); ++a) {
             term_[a] -= mass_[a] * next_[a];
             nodes_[a] += term_[a];
@@ -102,6 +104,7 @@ void PointField<Dim, functions>::scatter_velocities(std::span<const double> mass
                                                     int order) {
     std::fill(nodes_.begin(), nodes_.end(), Pack::Zero());
     for (std::size_t p = 0; p < stencils_.size(); ++p) {
+        if (v[p] == Vec<Dim>::Zero()) continue;
         Pack momentum = Pack::Zero();
         momentum.template head<Dim>() = (mass[p] * v[p]).array();
         add(stencils_[p], momentum, nodes_);

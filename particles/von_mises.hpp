@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "particles/strain.hpp"
 
@@ -208,26 +209,37 @@ inline double volume_energy(double J, const VonMises& law) {
     return 0.5 * law.bulk_modulus * (j - std::log1p(j) + 0.5 * j * j);
 }
 
-/// Takes the state through the relative gradient f = F_n+1 F_n^-1. `work` grows by the plastic work [J/m^3].
-/// Kirchhoff stress [Pa].
-template <int Dim>
-SymTensor<Dim> update(PlasticState<Dim>& state, const Mat<Dim>& f, const VonMises& law, double& work) {
-    const double ratio = f.determinant();
-    const double shrink = 1.0 / std::cbrt(ratio * ratio);
-    SymTensor<Dim> be_tr = push_forward<Dim>(f, state.be);
-    for (double& component : be_tr) component *= shrink;
-    const PlasticReturn<Dim> now = return_to_yield<Dim>(be_tr, state.alpha, law);
-    state = {now.be, now.alpha, state.J * ratio};
-    work += now.work;
-    return kirchhoff_stress<Dim>(state.J, now.s, law);
-}
-
 /// tau of a state [Pa].
 template <int Dim>
 SymTensor<Dim> kirchhoff_stress(const PlasticState<Dim>& state, const VonMises& law) {
     SymTensor<Dim> s = plus_identity<Dim>(state.be, -mean_of<Dim>(state.be));
     for (double& component : s) component *= law.shear_modulus;
     return kirchhoff_stress<Dim>(state.J, s, law);
+}
+
+/// ratio^(-2/3); the series is exact to round-off where it is used, and saves the root.
+inline double isochoric_factor(double ratio) {
+    const double e = ratio - 1.0;
+    if (std::abs(e) > 1e-3) return 1.0 / std::cbrt(ratio * ratio);
+    return 1.0 -
+           e * (2.0 / 3.0 - e * (5.0 / 9.0 - e * (40.0 / 81.0 - e * (110.0 / 243.0 - e * (308.0 / 729.0)))));
+}
+
+/// Takes the state through the relative gradient f = F_n+1 F_n^-1. `work` grows by the plastic work [J/m^3].
+/// Kirchhoff stress [Pa].
+template <int Dim>
+SymTensor<Dim> update(PlasticState<Dim>& state, const Mat<Dim>& f, const VonMises& law, double& work) {
+    const double ratio = f.determinant();
+    const double shrink = isochoric_factor(ratio);
+    state.be = push_forward<Dim>(f, state.be);
+    for (double& component : state.be) component *= shrink;
+    state.J *= ratio;
+    if (law.yield_stress == std::numeric_limits<double>::infinity()) return kirchhoff_stress<Dim>(state, law);
+    const PlasticReturn<Dim> now = return_to_yield<Dim>(state.be, state.alpha, law);
+    state.be = now.be;
+    state.alpha = now.alpha;
+    work += now.work;
+    return kirchhoff_stress<Dim>(state.J, now.s, law);
 }
 
 /// W of a state [J/m^3].

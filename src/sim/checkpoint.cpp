@@ -71,7 +71,13 @@ void pass_state(Checkpoint& checkpoint, Scene<Dim>& scene, StepContext<Dim>& now
     checkpoint.array("bonds alive", std::span(scene.alive));
     checkpoint.array("plastic strain", std::span(scene.plastic));
     if (!scene.works.empty()) checkpoint.array("works of bonds", std::span(scene.works));
-    if (scene.points) checkpoint.array("points", scene.points->states());
+    if (scene.points) {
+        checkpoint.array("points", scene.points->states());
+        PointContact<Dim>& contact = scene.point_contact;
+        checkpoint.vector("contact asked for", contact.last);
+        checkpoint.vector("contact mapped", contact.mapped);
+        checkpoint.value("part of a step", contact.part);
+    }
     for (Wall<Dim>& wall : scene.walls) {
         checkpoint.value("wall point", wall.point);
         checkpoint.value("wall velocity", wall.velocity);

@@ -1,18 +1,34 @@
 // What acts on material points from outside: contact and loads, by way of the grid.
 //
-// Points move with u = P v (particles/material_points.hpp). Contact sees u, asks for a change c of it, and
-// the velocities get
+// Points move with u = P v (particles/material_points.hpp). Contact sees velocities of points and asks for a
+// change c of them; the velocities v get P c, so that the work c.u of an impulse is that of P c, and u gets
+// P P c, which is less than c where a surface shares its nodes with the inside. What is still missing after
+// one solution of contact is asked for in the next step, which starts from the last one's c (P c of the same
+// step, so that nothing is mapped twice):
+//
+//     u    = P (v* + P c_n-1)                   the trial velocities, with what contact asked for last
+//     c_n  = contact(u - c_n-1)                 what it asks for now
+//     v    = v* + P c_n
+//
+//     v*     velocities with the forces of this step [m/s]; c also of grains that are no points, P = 1
+//     c_0    = 0; what half a kick leaves counts twice
+//
+// Contact solves c as if u would get it whole; u - c_n-1 + c_n is what u gets if c stays: where impulses change
+// slowly nothing is left. Their change from step to step leaves an approach of (1 - P P) dc: a stiff spring,
+// which gives back what it takes, where one solution without memory leaves a dashpot, and where a dozen
+// solutions a step cost five times as much and lose no less (docs/material_points.md).
+//
+// `rule: seed` changes nodal velocities, not those of points; it asks in rounds,
 //
 //     v += w P c,    hence    u += w P P c,    w = (c, P P c)/(P P c, P P c),   1 <= w <= 2
 //
-//     c      what contact adds to u, of all particles [m/s]; P = 1 for those that are no points
 //     ( , )  sum over the particles with their masses
 //
-// P P c is less than c, where a surface shares its nodes with the inside, so contact is asked again until
-// what is added falls below `round_tolerance` of the first round, at most `max_rounds` times; w is the best
-// step along c. P is symmetric: J.u = (P J).v, so the works that contact books with u are those of v, but for
-// the rounds, whose sum is booked as it is. Springs between nodes are forces: asked once, mapped with w = 1,
-// they keep energy. A list of contacts holds the impulses of all rounds, each times its w. Our own.
+// until what is added falls below `round_tolerance` of the first round, at most `max_rounds` times. Springs
+// between nodes are forces: asked once, mapped as they are, they keep energy. Our own.
+//
+// Works: those of friction and walls are what contact books with the velocities that it sees; the normal work
+// is the rest of what the velocities v gain.
 #pragma once
 
 #include "src/sim/scene.hpp"

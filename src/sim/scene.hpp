@@ -60,10 +60,12 @@ struct StepArrays {
     std::vector<Vec<Dim>> wall_v_before;  ///< [n_walls] velocity half a step back
 };
 
-/// Velocities and their changes while contact acts on material points, point_contact.hpp [m/s].
+/// Velocities and their changes while contact acts on material points, point_contact.hpp [m/s], all [n].
 template <int Dim>
 struct PointContact {
-    std::vector<Vec<Dim>> before, u, star, asked, change, added;  ///< [n]
+    std::vector<Vec<Dim>> last, mapped;           ///< c, P c of the last step
+    double part = 1.0;                            ///< of a whole step that they belong to
+    std::vector<Vec<Dim>> u, asked, once, twice;  ///< of the step at hand
     ContactReport<Dim> report;
 };
 
