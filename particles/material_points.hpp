@@ -1,6 +1,7 @@
 // Grains of material points: internal forces and motion by way of the background grid.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <variant>
 #include <vector>
@@ -28,14 +29,22 @@ namespace quern {
 /// and contact act on the velocities of the points, so that every contact method serves both kinds of grain;
 /// all forces are adjoint to the motion, so that kinetic and elastic energy change hands without loss.
 ///
+/// One field for all grains (`one_field`) is the method before contact: Sulsky, Chen, Schreyer, Comput.
+/// Methods Appl. Mech. Eng. 118 (1994) 179. What shares a node moves with it: grains stick to each other,
+/// without any law of contact. Grains that are led (`make_rigid`) count a million times their mass in S and
+/// in m_a, so that the nodes that they share follow them, and keep the stress that they have.
+///
 /// 2D: plane strain, per metre of thickness.
 template <int Dim>
 class MaterialPoints {
   public:
-    MaterialPoints(const CartesianGrid<Dim>& grid, const PointOptions& options);
+    MaterialPoints(const CartesianGrid<Dim>& grid, const PointOptions& options, bool one_field);
 
     /// Grains in the order of their particles. `volume` [grain.count].
     void add_grain(const Grain<Dim>& grain, std::span<const double> volume, const VonMises& law);
+
+    /// Grain k is led: what it shares nodes with follows it.
+    void make_rigid(const Particles<Dim>& particles, int k);
 
     /// Sets f of the points of all grains [N; 2D: N/m]. Begins a step: what follows is at these positions.
     void compute_forces(const Particles<Dim>& particles, std::vector<Vec<Dim>>& f);
@@ -55,9 +64,10 @@ class MaterialPoints {
     void compute_plastic_strain(int k, std::span<float> alpha) const;  ///< of the points of grain k [count]
     bool yields() const;                                               ///< some grain has a yield stress
 
-    /// Highest frequency of grain k without stress [rad/s], by Lanczos on the forces that the points would
-    /// have (stable_step.hpp), with a margin for where it lies in its cells: from place to place it differs
-    /// by 2 to 6 % with gimp and quadratic functions, by up to 40 % with linear ones.
+    /// Highest frequency of grain k (of all, if they have one field) without stress [rad/s], by Lanczos on
+    /// the forces that the points would have (stable_step.hpp), with a margin for where it lies in its cells:
+    /// from place to place it differs by 2 to 6 % with gimp and quadratic functions, by up to 40 % with
+    /// linear ones.
     double max_frequency(const Particles<Dim>& particles, int k) const;
 
     int n_grains() const { return static_cast<int>(grains_.size()); }
@@ -66,20 +76,30 @@ class MaterialPoints {
     std::span<PlasticState<Dim>> states() { return states_; }
 
   private:
-    struct Member {
+    struct Range {
         std::size_t first = 0, count = 0;  ///< particles
         std::size_t state = 0;             ///< place of the first in the arrays below
-        VonMises law;
     };
+    struct Member : Range {
+        VonMises law;
+        bool rigid = false;
+    };
+    const Member& grain_at(std::size_t state) const { return grains_[grain_of_[state]]; }
+    /// Of the points of a body in S and in the forces [kg; 2D: kg/m].
+    std::span<const double> weights(const Particles<Dim>& particles, const Range& body) const;
     template <PointFunctions functions>
     using Fields = std::vector<PointField<Dim, functions>>;
 
     CartesianGrid<Dim> grid_;
     PointOptions options_;
+    bool one_field_;
     std::vector<Member> grains_;
+    std::vector<Range> bodies_;            ///< what has a field of its own
+    std::vector<std::uint32_t> grain_of_;  ///< of each state
     std::vector<PlasticState<Dim>> states_;
-    std::vector<double> half_;  ///< half widths of the points [cells]
-    /// One a grain, at the positions of the step.
+    std::vector<double> weights_;  ///< one a state; empty: the masses
+    std::vector<double> half_;     ///< half widths of the points [cells]
+    /// One a body, at the positions of the step.
     std::variant<Fields<PointFunctions::linear>, Fields<PointFunctions::gimp>,
                  Fields<PointFunctions::quadratic>>
         fields_;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "grid/shape_functions.hpp"
@@ -35,9 +36,10 @@ class PointField {
   public:
     using Stencil = PointStencil<Dim, functions>;
 
-    /// Weights of the points at x [m], with half widths [cells] and masses, all [n].
+    /// Weights of the points at x [m], with half widths [cells] and masses, all [n]. `wraps`: points may lie
+    /// anywhere along periodic axes, and meet those one period further.
     void place(const CartesianGrid<Dim>& grid, std::span<const Vec<Dim>> x, std::span<const double> half,
-               std::span<const double> mass);
+               std::span<const double> mass, bool wraps);
 
     void scatter_velocities(std::span<const double> mass, std::span<const Vec<Dim>> v, int order);
     /// stress(p): tau of point p as a matrix [Pa].
@@ -63,6 +65,10 @@ class PointField {
     void for_each_row(const Stencil& s, Visit&& visit) const;
     Pack value_at(const Stencil& s, const std::vector<Pack>& nodes) const;
     void add(const Stencil& s, const Pack& amount, std::vector<Pack>& nodes) const;
+    /// Nodes past the end of a periodic axis and those that they stand for get the sum of both.
+    void find_twins(const CartesianGrid<Dim>& grid, const IntVec<Dim>& n_nodes);
+    template <class T>
+    void join_twins(std::vector<T>& nodes) const;
     /// Nodal sums to nodal values: over the mass, then the terms of q beyond the first.
     void finish(std::span<const double> mass, int order);
 
@@ -70,6 +76,7 @@ class PointField {
     std::vector<double> mass_;       ///< [n_nodes] sums, from `place` on inverse, 0 where no mass is
     std::vector<Pack> nodes_;        ///< [n_nodes] velocity or force over mass
     std::vector<Pack> term_, next_;  ///< [n_nodes] of q
+    std::vector<std::pair<std::size_t, std::size_t>> twins_;  ///< past the end, and within; axis after axis
     IntVec<Dim> low_;
     std::array<std::size_t, Dim> stride_{};
     double inverse_h_ = 0.0;

@@ -53,24 +53,54 @@ inline void PointField<Dim, functions>::add(const Stencil& s, const Pack& amount
 }
 
 template <int Dim, PointFunctions functions>
+void PointField<Dim, functions>::find_twins(const CartesianGrid<Dim>& grid, const IntVec<Dim>& n_nodes) {
+    twins_.clear();
+    const std::size_t n = nodes_.size();
+    for (int a = 0; a < Dim; ++a) {
+        if (!grid.periodic(a)) continue;
+        const std::size_t period = stride_[a] * static_cast<std::size_t>(grid.n_cells()[a]);
+        for (std::size_t node = 0; node < n; ++node)
+            if (static_cast<int>(node / stride_[a]) % n_nodes[a] >= grid.n_cells()[a])
+                twins_.emplace_back(node, node - period);
+    }
+}
+
+template <int Dim, PointFunctions functions>
+template <class T>
+inline void PointField<Dim, functions>::join_twins(std::vector<T>& nodes) const {
+    for (const auto& [past, within] : twins_) nodes[within] += nodes[past];
+    for (auto pair = twins_.rbegin(); pair != twins_.rend(); ++pair) nodes[pair->first] = nodes[pair->second];
+}
+
+template <int Dim, PointFunctions functions>
 void PointField<Dim, functions>::place(const CartesianGrid<Dim>& grid, std::span<const Vec<Dim>> x,
-                                       std::span<const double> half, std::span<const double> mass) {
+                                       std::span<const double> half, std::span<const double> mass,
+                                       bool wraps) {
     inverse_h_ = 1.0 / grid.h();
     stencils_.resize(x.size());
     IntVec<Dim> low = IntVec<Dim>::Constant(std::numeric_limits<int>::max()), high = -low;
     for (std::size_t p = 0; p < x.size(); ++p) {
         stencils_[p].set(grid.in_cells(x[p]), half[p]);
+        for (int a = 0; a < Dim && wraps; ++a)
+            if (grid.periodic(a)) stencils_[p].base[a] = grid.wrapped(a, stencils_[p].base[a]);
         low = low.cwiseMin(stencils_[p].base);
         high = high.cwiseMax(stencils_[p].base);
     }
+    for (int a = 0; a < Dim && wraps; ++a)
+        if (grid.periodic(a)) {
+            low[a] = 0;
+            high[a] = grid.n_cells()[a] - 1;
+        }
     low_ = low;
+    const IntVec<Dim> size = high - low + IntVec<Dim>::Constant(width);
     std::size_t n_nodes = 1;
     for (int a = 0; a < Dim; ++a) {
         stride_[a] = n_nodes;
-        n_nodes *= static_cast<std::size_t>(high[a] - low[a] + width);
+        n_nodes *= static_cast<std::size_t>(size[a]);
     }
     mass_.assign(n_nodes, 0.0);
     nodes_.resize(n_nodes);
+    if (wraps) find_twins(grid, size);
     for (std::size_t p = 0; p < x.size(); ++p) {
         const Stencil& s = stencils_[p];
         for_each_row(s, [&](const Row& row) {
@@ -78,6 +108,7 @@ void PointField<Dim, functions>::place(const CartesianGrid<Dim>& grid, std::span
             for (std::size_t i = 0; i < width; ++i) mass_[row.node + i] += s.value[0][i] * part;
         });
     }
+    join_twins(mass_);
     for (double& m : mass_) m = m > 0.0 ? 1.0 / m : 0.0;
 }
 
@@ -92,6 +123,7 @@ void PointField<Dim, functions>::finish(std::span<const double> mass, int order)
             const Pack value = value_at(stencils_[p], term_);
             if ((value != 0.0).any()) add(stencils_[p], mass[p] * value, next_);
         }
+        join_twins(next_);
         for (std::size_t a = 0; a < nodes_.size(); ++a) {
             term_[a] -= mass_[a] * next_[a];
             nodes_[a] += term_[a];
@@ -109,6 +141,7 @@ void PointField<Dim, functions>::scatter_velocities(std::span<const double> mass
         momentum.template head<Dim>() = (mass[p] * v[p]).array();
         add(stencils_[p], momentum, nodes_);
     }
+    join_twins(nodes_);
     finish(mass, order);
 }
 
@@ -134,6 +167,7 @@ inline void PointField<Dim, functions>::scatter_forces(std::span<const double> m
                 nodes_[row.node + i] += s.slope[0][i] * along + s.value[0][i] * across;
         });
     }
+    join_twins(nodes_);
     finish(mass, order);
 }
 

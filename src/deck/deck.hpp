@@ -105,8 +105,8 @@ struct GridDeck {
     Place place;
 };
 
-enum class ContactRule { none, pair, surface, seed };
-enum class ContactWalls { rule, exact, tile };  ///< rule: exact for surface, tile for pair
+enum class ContactRule { none, pair, surface, seed, no_slip };  ///< no_slip: material points, one field
+enum class ContactWalls { rule, exact, tile };                  ///< rule: exact for surface, tile for pair
 enum class ContactCoupling { impulse, flip };
 enum class ContactMethodKind { grid, node_pair };
 

@@ -295,8 +295,10 @@ Table<ContactDeck> contact_table() {
            "On the grid, or between nodes; all keys but rule: none, friction, pairs, debris and node_pair "
            "belong to "
            "the grid");
-    t.word("rule", &T::rule, {"none", "pair", "surface", "seed"},
-           "No contact, pairs of grains on a node, surface particles on surfaces, or the seed rule");
+    t.word(
+        "rule", &T::rule, {"none", "pair", "surface", "seed", "no_slip"},
+        "No contact, pairs of grains on a node, surface particles on surfaces, the seed rule, or one field "
+        "for all grains of material points, which stick");
     t.word("walls", &T::walls, {"rule", "exact", "tile"},
            "Gap to walls: at surface particles (exact) or one a node (tile); rule: exact for surface, else "
            "tile");

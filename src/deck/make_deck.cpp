@@ -138,7 +138,7 @@ ForceModel model_of(const Deck& deck, const GrainDeck& grain) {
         ->model;
 }
 
-/// What acts on bonds, or on velocities that the grid would spread, is of no use to material points.
+/// What acts on bonds is of no use to material points.
 template <class Target>
 void check_peridynamic(const Deck& deck, const Target& target, const std::string& shape, const char* what) {
     for (std::size_t i = 0; i < deck.grains.size(); ++i) {
@@ -162,6 +162,19 @@ void check_points(const Deck& deck) {
     if (any && grid && deck.contact.coupling == ContactCoupling::flip)
         throw InputError(place_text(deck.contact.place, "coupling"), "flip with material points", "impulse",
                          "they are moved by FLIP as they are");
+    if (deck.contact.rule != ContactRule::no_slip) return;
+    const std::string rule = place_text(deck.contact.place, "rule");
+    if (deck.contact.method == ContactMethodKind::node_pair)
+        throw InputError(rule, "no_slip with method node_pair", "method: grid",
+                         "grains stick by their common field");
+    if (!deck.walls.empty())
+        throw InputError(rule, fmt::format("no_slip with wall '{}'", deck.walls.front().name), "no walls",
+                         "hold grains by constraints instead");
+    for (std::size_t i = 0; i < deck.grains.size(); ++i)
+        if (model_of(deck, deck.grains[i]) != ForceModel::material_points)
+            throw InputError(rule,
+                             fmt::format("no_slip with grain {}, which is not made of material points", i),
+                             "model: material_points in every material", "peridynamic grains have no field");
 }
 
 void check_walls(const Deck& deck) {
@@ -236,8 +249,6 @@ Deck make_deck(DeckInput input, const Cursor& at, const Context& now) {
     for (const CrackDeck& crack : deck.cracks) check_peridynamic(deck, crack, crack.shape, "a crack");
     for (const NoFailDeck& zone : deck.no_fail)
         check_peridynamic(deck, zone, zone.shape, "a zone without failure");
-    for (const ConstraintDeck& held : deck.constraints)
-        check_peridynamic(deck, held, {}, "a prescribed velocity");
     check_points(deck);
     settle(deck.output.track, deck.output.groups, at.where("output.track"));
     return deck;

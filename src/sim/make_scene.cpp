@@ -245,7 +245,8 @@ void add_points(const Deck& deck, Scene<Dim>& scene) {
     const int first = scene.groups.empty() ? 0 : scene.groups.back().last_grain;
     const int n_grains = static_cast<int>(scene.grains.size());
     if (first == n_grains) return;
-    MaterialPoints<Dim>& points = scene.points.emplace(scene.grid, deck.material_points);
+    const bool one_field = deck.contact.rule == ContactRule::no_slip;
+    MaterialPoints<Dim>& points = scene.points.emplace(scene.grid, deck.material_points, one_field);
     for (int g = first; g < n_grains; ++g) {
         const Grain<Dim>& grain = scene.grains[g];
         const Material& material = deck.materials[grain.material];
@@ -255,6 +256,11 @@ void add_points(const Deck& deck, Scene<Dim>& scene) {
                 .subspan(static_cast<std::size_t>(grain.first), static_cast<std::size_t>(grain.count)),
             {material.bulk_modulus, material.shear_modulus, material.yield_stress,
              material.hardening_modulus});
+    }
+    if (one_field) {
+        scene.point_frequency.assign(static_cast<std::size_t>(points.n_grains()),
+                                     points.max_frequency(scene.particles, 0));
+        return;
     }
     for (int begin = first, end; begin < n_grains; begin = end) {
         int small = begin, large = begin;
@@ -441,6 +447,34 @@ void add_loads_and_constraints(const Deck& deck, Scene<Dim>& scene) {
     find_held_walls(scene);
 }
 
+/// Points move with the field of their grain, which mixes what is held with what is free: all of it must be
+/// held, or nothing. In a field that they share with others, held grains are rigid: what the nodes between
+/// them and others do is no strain of theirs.
+template <int Dim>
+void hold_points(const Deck& deck, Scene<Dim>& scene) {
+    if (!scene.points) return;
+    const std::size_t nobody = scene.constraints.size();
+    std::vector<std::size_t> held_by(scene.particles.x.size(), nobody);
+    for (std::size_t c = 0; c < nobody; ++c)
+        for (const int p : scene.constraints[c].particles) held_by[p] = c;
+    for (int k = 0; k < scene.points->n_grains(); ++k) {
+        const Grain<Dim>& grain = scene.grains[scene.grains.size() - scene.points->n_grains() + k];
+        const auto first = held_by.begin() + grain.first, last = first + grain.count;
+        const std::size_t by = *std::min_element(first, last);
+        if (by == nobody) continue;
+        const auto& velocity = scene.constraints[by].velocity;
+        const bool all_axes =
+            std::all_of(velocity.begin(), velocity.end(), [](const auto& v) { return v.has_value(); });
+        if (!all_axes || std::any_of(first, last, [&](std::size_t c) { return c != by; }))
+            throw InputError(deck.constraints[by].place.text(),
+                             fmt::format("a velocity of {} of grain {}, which is made of material points",
+                                         all_axes ? "a part" : "some axes", grain.id),
+                             "whole grains held on all axes",
+                             "give the velocity of every axis, without region");
+        if (deck.contact.rule == ContactRule::no_slip) scene.points->make_rigid(scene.particles, k);
+    }
+}
+
 /// Contact on the grid solves for velocities before constraints are put back: it must know what they hold.
 /// A particle that is free along some axis keeps its mass.
 template <int Dim>
@@ -496,9 +530,10 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
         if (pair.friction)
             scene->friction.set(index_of(deck.materials, pair.first), index_of(deck.materials, pair.second),
                                 *pair.friction);
-    if (deck.contact.rule != ContactRule::none && deck.contact.method == ContactMethodKind::node_pair) {
+    const bool touches = deck.contact.rule != ContactRule::none && deck.contact.rule != ContactRule::no_slip;
+    if (touches && deck.contact.method == ContactMethodKind::node_pair) {
         add_node_pairs(deck, *scene);
-    } else if (deck.contact.rule != ContactRule::none) {
+    } else if (touches) {
         scene->contact.emplace(std::in_place_type<GridContact<Dim>>, scene->grid,
                                contact_options(deck.contact));
         if (scene->moves_with_grid()) {
@@ -511,6 +546,7 @@ std::unique_ptr<Scene<Dim>> make_scene(const Deck& deck) {
     scene->gravity = vec<Dim>(deck.gravity);
     scene->mass_damping = deck.mass_damping;
     add_loads_and_constraints(deck, *scene);
+    hold_points(deck, *scene);
     weigh_held_particles(*scene);
     return scene;
 }

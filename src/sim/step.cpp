@@ -257,11 +257,14 @@ void close_ledger(Scene<Dim>& scene, StepContext<Dim>& now, double dt) {
         entry.transfer = sums.transfer + entry.normal + entry.friction + entry.wall + entry.constraint;
 }
 
-/// Stress and strain of material points go to the end of the step, and `drift` to what moves each particle.
+/// Stress and strain of material points go to the end of the step, and `drift` to what moves each particle:
+/// those that are held go where they are led.
 template <int Dim>
 void move_points(Scene<Dim>& scene, StepContext<Dim>& now) {
     const StageTimer timer(now.stages.points);
     now.ledger.past.plastic += scene.points->move(scene.particles, now.dt, scene.arrays.drift);
+    for (const Constraint<Dim>& constraint : scene.constraints)
+        for (const int p : constraint.particles) scene.arrays.drift[p] = scene.particles.v[p];
 }
 
 }  // namespace

@@ -1,57 +1,15 @@
 // Material points: shape functions, forces as the adjoint of motion, stress, frequency.
-#include "particles/material_points.hpp"
+#include "tests/particles/point_body.hpp"
 
 #include <doctest/doctest.h>
 
 #include <random>
 
 #include "particles/shape_builders.hpp"
-#include "tests/particles/lattice.hpp"
 
 namespace quern::test {
 
 namespace {
-
-constexpr double density = 3000.0;
-const VonMises elastic{10e6, 2.5e6, std::numeric_limits<double>::infinity(), 0.0};
-const VonMises yielding{10e6, 2.5e6, 2e4, 5e5};
-
-/// One grain of a shape on a grid of twice its spacing, in the middle of a box, off the nodes.
-template <int Dim>
-struct Body {
-    Body(const Shape<Dim>& from, const PointOptions& options, const VonMises& law)
-        : shape(from),
-          grid(Vec<Dim>::Zero(), 2.0 * from.dx, IntVec<Dim>::Constant(60), {}),
-          points(grid, options) {
-        Grain<Dim> grain;
-        grain.shape = &shape;
-        grain.count = shape.n_nodes();
-        for (int i = 0; i < grain.count; ++i) {
-            particles.x.push_back(shape.X[i] + Vec<Dim>::Constant(30.17 * grid.h()));
-            particles.volume.push_back(shape.volume[i]);
-            particles.mass.push_back(density * shape.volume[i]);
-        }
-        particles.v.assign(particles.x.size(), Vec<Dim>::Zero());
-        points.add_grain(grain, particles.volume, law);
-        forces.resize(particles.x.size());
-        drift.resize(particles.x.size());
-    }
-    void step(double dt) {
-        points.compute_forces(particles, forces);
-        points.move(particles, dt, drift);
-        for (std::size_t p = 0; p < drift.size(); ++p) particles.x[p] += dt * drift[p];
-    }
-    /// Velocities A (x - centre).
-    void set_gradient(const Mat<Dim>& A) {
-        for (std::size_t p = 0; p < drift.size(); ++p)
-            particles.v[p] = A * (particles.x[p] - Vec<Dim>::Constant(30.17 * grid.h()));
-    }
-    Shape<Dim> shape;
-    CartesianGrid<Dim> grid;
-    MaterialPoints<Dim> points;
-    Particles<Dim> particles;
-    std::vector<Vec<Dim>> forces, drift;
-};
 
 template <int Dim>
 Shape<Dim> block(int n) {
@@ -95,7 +53,7 @@ template <int Dim>
 void check_power(const PointOptions& options) {
     CAPTURE(static_cast<int>(options.functions));
     CAPTURE(options.order);
-    Body<Dim> body(block<Dim>(4), options, elastic);
+    PointBody<Dim> body(block<Dim>(4), options, elastic);
     std::mt19937 random(3);
     std::normal_distribution<double> normal;
     const auto stir = [&](double size) {
@@ -138,7 +96,7 @@ TEST_CASE("Points: forces are minus the derivative of the energy along the motio
 
 TEST_CASE("Points: what the grid gives back is symmetric and keeps momentum") {
     for (const PointOptions& options : all_options) {
-        Body<2> body(block<2>(5), options, elastic);
+        PointBody<2> body(block<2>(5), options, elastic);
         std::mt19937 random(5);
         std::normal_distribution<double> normal;
         const std::size_t n = body.forces.size();
@@ -171,7 +129,7 @@ TEST_CASE("Points: a uniform gradient inside gives the stress of the law, elasti
     for (const PointFunctions functions : {PointFunctions::gimp, PointFunctions::quadratic})
         for (const VonMises& law : {elastic, yielding})
             for (const Mat<2>& gradient : {squeeze, shear}) {
-                Body<2> body(make_lattice<2>({20, 20}, 0.1), {functions, 1}, law);
+                PointBody<2> body(make_lattice<2>({20, 20}, 0.1), {functions, 1}, law);
                 PlasticState<2> state;
                 const double dt = 1e-3;
                 double work = 0.0;
@@ -205,7 +163,7 @@ TEST_CASE("Points: no place in the cells has a higher frequency than that of the
     for (const PointOptions& options : all_options) {
         CAPTURE(static_cast<int>(options.functions));
         CAPTURE(options.order);
-        Body<2> body(block<2>(5), options, elastic);
+        PointBody<2> body(block<2>(5), options, elastic);
         const double bound = body.points.max_frequency(body.particles, 0);
         const double margin = options.functions == PointFunctions::linear ? 1.4 : 1.06;
         const std::vector<Vec<2>> x = body.particles.x;

@@ -154,7 +154,10 @@ TEST_CASE("Material points: what they cannot do is said with its place") {
              Case{"density: 3000", "bond_damping: 0.1, density: 3000", "materials.rubber.bond_damping: "},
              Case{"rule: pair", "rule: pair, coupling: flip", "contact.coupling: got flip"},
              Case{"time:", "cracks: [{from: [1, 1], to: [2, 2]}]\ntime:", "cracks.0: got a crack in grain 0"},
-             Case{"time:", "constraints: [{velocity: [0, 0]}]\ntime:", "constraints.0: got a prescribed"},
+             Case{"time:", "constraints: [{velocity: [0, free]}]\ntime:",
+                  "constraints.0: got a velocity of some axes of grain 0"},
+             Case{"time:", "constraints: [{grains: [1], velocity: [0, 0], region: \"x < ${x_1}\"}]\ntime:",
+                  "constraints.0: got a velocity of a part of grain 1"},
              Case{"spacing: \"${1/n}\"", "spacing: \"${0.3/n}\"", "material points 0.08"},
          }) {
         CAPTURE(c.to);
