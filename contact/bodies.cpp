@@ -127,6 +127,11 @@ void ContactBodies<Dim>::make_bodies(const ContactScene<Dim>& grains) {
             debris_.push_back({place, body});
         }
     }
+    owners_.clear();
+    for (const int g : grain_of_) {
+        owners_.push_back(grains.grains[g]);
+        owners_.back().first = 0;
+    }
     for (std::size_t place = 0; place < order_.size(); ++place)
         place_of_[order_[place]] = static_cast<int>(place);
     pick<double>(grains.mass, mass_);

@@ -55,6 +55,8 @@ class ContactBodies {
     std::span<const int> order() const { return order_; }
     int body_of(int particle) const { return body_of_[particle]; }
     int grain_of(int body) const { return grain_of_[body]; }
+    /// The grain that a body or a piece of debris is of, with `first` 0: shape, scale and material.
+    const Grain<Dim>& owner(int body) const { return owners_[body]; }
     const std::vector<LooseParticle>& debris() const { return debris_; }
     const std::vector<CrackPair>& cracks() const { return cracks_; }
     /// Particles of the pieces that are bodies, by their places.
@@ -95,7 +97,8 @@ class ContactBodies {
     std::vector<Run> runs_;
     std::vector<Grain<Dim>> bodies_;
     std::vector<int> grain_of_;  // [n_bodies + pieces of debris]
-    std::vector<int> body_of_;   // [n]
+    std::vector<Grain<Dim>> owners_;
+    std::vector<int> body_of_;  // [n]
     std::vector<LooseParticle> debris_;
     std::vector<CrackPair> cracks_;
     std::vector<int> in_pieces_;

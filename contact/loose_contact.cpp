@@ -55,6 +55,7 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
     std::sort(near_.begin(), near_.end(), [](const CrackPair& a, const CrackPair& b) {
         return std::pair(a.first, a.second) < std::pair(b.first, b.second);
     });
+    if (!bodies.debris().empty()) friction_.search(bodies, scene, near_, cells_);
     const auto add_walls = [&](int p, double range) {
         for (std::size_t w = 0; w < scene.walls.size(); ++w)
             if (scene.walls[w].distance(scene.x[p]) < range + margin)
@@ -92,6 +93,7 @@ bool LooseContact<Dim>::make_row(const ContactScene<Dim>& scene, const ContactTr
     row.gap_speed = std::max(gap, 0.0) / trial.dt;
     row.J = 0.0;
     row.J_t.setZero();
+    row.rub = -1;
     return true;
 }
 
@@ -113,11 +115,15 @@ void LooseContact<Dim>::find(const ContactBodies<Dim>& bodies, const ContactScen
                        few / block);
     rows_.clear();
     touched_.clear();
-    for (const Row& row : found_) {
+    friction_.clear();
+    for (std::size_t k = 0; k < n; ++k) {
+        Row& row = found_[k];
         if (row.mass == 0.0) continue;
+        if (row.q >= 0 && k >= n_cracks)
+            row.rub = friction_.add(bodies, scene, row.p, row.q, nearest_(scene.x[row.p], scene.x[row.q]),
+                                    radius_[row.p], radius_[row.q]);
         rows_.push_back(row);
-        touched_.push_back(row.p);
-        if (row.q >= 0) touched_.push_back(row.q);
+        for_each_moved(row, [&](int p) { touched_.push_back(p); });
     }
     std::sort(touched_.begin(), touched_.end());
     touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
@@ -143,10 +149,10 @@ void LooseContact<Dim>::make_islands(std::size_t n_particles) {
         return p;
     };
     for (const Row& row : rows_)
-        if (row.q >= 0) {
-            const int r = root(row.p), s = root(row.q);
+        for_each_moved(row, [&](int p) {
+            const int r = root(row.p), s = root(p);
             root_[std::max(r, s)] = std::min(r, s);
-        }
+        });
     island_of_.assign(n_particles, -1);
     for (const Row& row : rows_) {
         int& island = island_of_[root(row.p)];
@@ -185,7 +191,16 @@ double LooseContact<Dim>::update(const ContactScene<Dim>& scene, const ContactTr
             give(row.p, -change * row.n);
             give(row.q, change * row.n);
         }
-        return std::abs(change);
+        if (row.rub < 0) return std::abs(change);
+        const Vec<Dim> u = friction_.slip(row.rub, scene, moving);
+        const Vec<Dim> asked = row.J_t + (u - row.n.dot(u) * row.n) / friction_.inverse_mass(row.rub);
+        const double size = asked.norm(), most = friction_.friction(row.rub) * J;
+        const Vec<Dim> J_t = size > most ? Vec<Dim>(most / size * asked) : asked, given = J_t - row.J_t;
+        row.J_t = J_t;
+        if (given.isZero(0.0)) return std::abs(change);
+        friction_.push(row.rub, scene, given, trial.v);
+        if (!trial.drift.empty()) friction_.push(row.rub, scene, given, trial.drift);
+        return std::abs(change) + given.norm();
     }
     const Wall<Dim>& wall = scene.walls[-1 - row.q];
     const Vec<Dim> u = moving[row.p] - wall.velocity;
@@ -216,8 +231,12 @@ void LooseContact<Dim>::book(const ContactBodies<Dim>& bodies, const ContactScen
         if (row.J == 0.0) continue;
         ++report.n_contacts;
         if (row.q >= 0) {
-            report.grain_impulse[bodies.grain_of(bodies.body_of(row.p))] -= row.J * row.n;
-            report.grain_impulse[bodies.grain_of(bodies.body_of(row.q))] += row.J * row.n;
+            const Vec<Dim> J = row.J * row.n + row.J_t;
+            report.grain_impulse[bodies.grain_of(bodies.body_of(row.p))] -= J;
+            report.grain_impulse[bodies.grain_of(bodies.body_of(row.q))] += J;
+            if (row.rub >= 0)
+                by_friction -= 0.5 * row.J_t.dot(friction_.slip(row.rub, scene, trial.v_before) +
+                                                 friction_.slip(row.rub, scene, trial.v));
             continue;
         }
         const std::size_t w = static_cast<std::size_t>(-1 - row.q);
@@ -279,8 +298,14 @@ void LooseContact<Dim>::list_contacts(const ContactBodies<Dim>& bodies, const Co
             point.at_first = x + part * d;
             point.at_second = scene.x[row.q] - (1.0 - part) * d;
             point.normal = row.n;
-            point.impulse = row.J * row.n;
+            point.impulse = row.J * row.n + row.J_t;
             point.slips = true;
+            if (row.rub >= 0) {
+                point.at_first = x + friction_.lever_p(row.rub);
+                point.at_second = scene.x[row.q] + friction_.lever_q(row.rub);
+                point.slips =
+                    at_friction_limit<Dim>(point.impulse, point.normal, friction_.friction(row.rub));
+            }
         } else {
             const Wall<Dim>& wall = scene.walls[-1 - row.q];
             point.second = row.q;

@@ -1,31 +1,35 @@
 // Contact that needs no surface: debris against everything, and the two faces of a crack inside one piece.
 //
-// A particle of debris is a ball of its own volume that does not turn, r = V^(1/n)/2 (n: dimension). It meets
-// every particle q of other pieces, as a ball of q's volume, and the walls. Two particles of one piece whose
-// bond of at most 1.5 dx is broken touch at 0.95 dx. One impulse a pair along the line of centres, one a wall
-// with Coulomb friction; projected Gauss-Seidel, after the rule of the grid (n from p to q, d distance):
+// A particle of debris is a ball of its own volume, r = V^(1/n)/2 (n: dimension). It meets every particle q
+// of other pieces, as a ball of q's volume, and the walls. Two particles of one piece whose bond of at
+// most 1.5 dx is broken touch at 0.95 dx. One impulse a pair along the line of centres, one a wall, both with
+// Coulomb friction but that of cracks; projected Gauss-Seidel, after the rule of the grid (n from p to q, d
+// distance):
 //
 //     pair      J' = max(0, J + m (n.(v_p - v_q) - max(g, 0)/dt)),   g = d - r_p - r_q,  1/m = 1/m_p + 1/m_q
+//               J_t' = projection onto |J_t| <= mu J' of J_t + (u_p - u_q)_t/W      (loose_friction.hpp)
 //     wall      J' = max(0, J - m_p (n.(v_p - u) + max(g, 0)/dt)),   g = n.(x_p - x_w) - r_p
 //               J_t' = projection onto |J_t| <= mu J' of J_t - m_p (v_p - u)_t
 //
 // Pieces that are bodies meet walls by the rule of the grid, which feels nothing of a piece narrower than a
 // cell or two: of these no particle's centre passes a wall (the same law with r_p = 0).
 //
-//     J [N s; 2D: N s/m], m [kg; 2D: kg/m], g, d, r [m], u velocity of the wall [m/s]
+//     J, J_t [N s; 2D: N s/m], m [kg; 2D: kg/m], g, d, r [m], mu no unit, u velocity of the wall [m/s]
 //
-// Pairs push apart along their line and never pull: momentum and moment of momentum are exact, energy falls,
-// nothing sticks. Impulses do not undo an overlap, so nothing is thrown. Between particles there is no
-// friction: balls that do not turn would lose moment of momentum by it. Our own; faces of a crack as in
-// PeriDEM (Jha, Desai, Bhattacharya, Lipton, J. Mech. Phys. Solids 151 (2021) 104376, section 2.2: nodes of
-// one grain without a bond repel at 0.95 of the spacing), with impulses in the place of springs. What slides
-// along a crack by more than a bond can reach is not found again while the piece holds together.
+// Pairs push apart along their line and never pull, and what rubs passes on its moment: momentum and moment
+// of momentum are exact, energy falls, nothing sticks. Impulses do not undo an overlap, so nothing is thrown.
+// Surfaces of balls are not flat: what slides over a lattice is held by its hollows as well. Our own; faces
+// of a crack as in PeriDEM (Jha, Desai, Bhattacharya, Lipton, J. Mech. Phys. Solids 151 (2021) 104376,
+// section 2.2: nodes of one grain without a bond repel at 0.95 of the spacing, without friction), with
+// impulses in the place of springs. What slides along a crack by more than a bond can reach is not found
+// again while the piece holds together.
 #pragma once
 
 #include <vector>
 
 #include "contact/bodies.hpp"
 #include "contact/contact_list.hpp"
+#include "contact/loose_friction.hpp"
 #include "contact/point_cells.hpp"
 
 namespace quern {
@@ -58,6 +62,7 @@ class LooseContact {
         double mass = 0.0, gap_speed = 0.0;
         double J = 0.0;
         Vec<Dim> J_t = Vec<Dim>::Zero();
+        int rub = -1;  ///< of LooseFriction; -1: no friction between the two
     };
     /// Rows in_islands_[first, last), which share no particle with others.
     struct Island {
@@ -68,6 +73,13 @@ class LooseContact {
     void search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene);
     bool make_row(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, const CrackPair& near,
                   Row& row) const;
+    /// visit(particle) for all that a row moves.
+    template <class Visit>
+    void for_each_moved(const Row& row, Visit&& visit) const {
+        visit(row.p);
+        if (row.q >= 0) visit(row.q);
+        if (row.rub >= 0) friction_.for_each_moved(row.rub, visit);
+    }
     void make_islands(std::size_t n_particles);
     void sweep(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, bool forwards, Island& island);
     double update(const ContactScene<Dim>& scene, const ContactTrial<Dim>& trial, Row& row) const;
@@ -85,6 +97,7 @@ class LooseContact {
     double search_at_ = 0.0;       // of `travelled` [m]
     std::vector<CrackPair> near_;  // pairs with debris in them, ascending; then what is near walls
     PointCells<Dim> cells_;
+    LooseFriction<Dim> friction_;
 
     // Of this step.
     std::vector<Row> found_;  // [cracks and near_], mass 0: do not touch
