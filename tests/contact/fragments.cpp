@@ -429,7 +429,7 @@ void check_riders() {
                 const Vec<Dim> before = riders.mean(), P = world.momentum();
                 const Spin<Dim> L = world.angular_momentum();
                 const double T = world.kinetic_energy();
-                const ContactReport<Dim> report = riders.cut.step();
+                const ContactReport<Dim> report = riders.cut.step(6.0);
                 const Vec<Dim> dv = riders.mean() - before;
                 change.push_back({dv.dot(riders.up), dv.dot(riders.along)});
                 CHECK((world.momentum() - P).norm() < 1e-14 * P.norm());          // measured 7e-16
@@ -440,11 +440,11 @@ void check_riders() {
             }
             CHECK(change[0][0] > 0.4);
             CHECK(change[0][1] == doctest::Approx(-mu * change[0][0]).epsilon(1e-3).scale(1.0));
-            CHECK((change[0] - change[1]).norm() < 1e-12);  // measured 1e-14
+            CHECK((change[0] - change[1]).norm() < 1e-12);  // measured 2e-13
             Riders<Dim> away(mu, width, 0.3);
             away.send(0.1 * away.up + 5.0 * away.along);
             const std::vector<Vec<Dim>> v = away.cut.world.particles.v;
-            away.cut.step();
+            away.cut.step(6.0);
             CHECK(v == away.cut.world.particles.v);
         }
 }
@@ -462,9 +462,9 @@ TEST_CASE("Fragments: debris that its weight presses on a grain slows down by mu
         Riders<2> riders(0.3, width, 0.0, 1e6);
         World<2>& world = riders.cut.world;
         world.dt = 4e-3;
-        riders.send(1.0 * riders.along);
+        riders.send(0.3 * riders.along);
         const double g = 10.0;
-        const int n = static_cast<int>(std::lround(0.2 / world.dt));
+        const int n = static_cast<int>(std::lround(0.06 / world.dt));
         const auto run = [&](int steps) {  // in place: each stays on the particle that it lies on
             for (int k = 0; k < steps; ++k) {
                 for (std::size_t i = 0; i < world.particles.v.size(); ++i)
@@ -474,11 +474,11 @@ TEST_CASE("Fragments: debris that its weight presses on a grain slows down by mu
         };
         run(n);
         const double t = n * world.dt;
-        // measured 0.400001 | 0.4, bound 0.1 %
-        CHECK(riders.mean().dot(riders.along) == doctest::Approx(1.0 - 0.3 * g * t).epsilon(1e-3));
+        // measured 0.120 | 0.12, bound 0.1 %
+        CHECK(riders.mean().dot(riders.along) == doctest::Approx(0.3 - 0.3 * g * t).epsilon(1e-3));
         run(n);
-        // measured 2e-6; pairs, which nothing but contact holds together here, have begun to turn: 0.043
-        CHECK(std::abs(riders.mean().dot(riders.along)) < (width == 1 ? 1e-4 : 0.06));
+        // measured 5e-7; pairs, which nothing but contact holds together here, have begun to turn: 0.013
+        CHECK(std::abs(riders.mean().dot(riders.along)) < (width == 1 ? 1e-4 : 0.03));
     }
 }
 
