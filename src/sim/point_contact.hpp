@@ -13,10 +13,10 @@
 //     v*     velocities with the forces of this step [m/s]; c also of grains that are no points, P = 1
 //     c_0    = 0; what half a kick leaves counts twice
 //
-// Contact solves c as if u would get it whole; u - c_n-1 + c_n is what u gets if c stays: where impulses change
-// slowly nothing is left. Their change from step to step leaves an approach of (1 - P P) dc: a stiff spring,
-// which gives back what it takes, where one solution without memory leaves a dashpot, and where a dozen
-// solutions a step cost five times as much and lose no less (docs/material_points.md).
+// Contact solves c as if u would get it whole; u - c_n-1 + c_n is what u gets if c stays: where impulses
+// change slowly nothing is left. Their change from step to step leaves an approach of (1 - P P) dc: a stiff
+// spring, which gives back what it takes, where one solution without memory leaves a dashpot. A dozen
+// solutions a step make the step three times as dear; what differs is in docs/material_points.md.
 //
 // `rule: seed` changes nodal velocities, not those of points; it asks in rounds,
 //
