@@ -3,7 +3,7 @@ PRESET ?= release
 BUILD  := build/$(PRESET)
 JOBS   ?= $(shell nproc)
 
-.PHONY: all build packages demo test bench bench-long bench-methods bench-instructions bench-docs compare compare-docs clang debug asan tsan format check-format clean help
+.PHONY: all build packages demo test bench bench-long bench-methods bench-instructions bench-docs compare compare-docs shear clang debug asan tsan format check-format clean help
 
 all: build            ## build (PRESET=release): build/release/quern
 
@@ -15,11 +15,17 @@ build: packages
 	@rm -f build.log
 	cmake --build --preset $(PRESET) -j $(JOBS)
 
-demo: build           ## the disk on the inclined plane: run, pictures, errors against the rigid disk
+demo: build           ## a disk on an inclined plane, 369 grains in shear: runs, pictures, errors against the rigid disk
 	$(BUILD)/quern run examples/inclined_plane/disk.yaml -o out/demo
 	$(BUILD)/quern render out/demo -o out/demo/disk.png --field von_mises
 	$(BUILD)/inclined_plane_report -o out/inclined_plane
-	@echo "Pictures: out/demo/disk.png and out/inclined_plane/*.png"
+	$(BUILD)/quern run examples/granular_shear/short.yaml -o out/shear
+	$(BUILD)/quern render out/shear -o out/shear/stress.png --field principal_difference --dark --range 0 4e8
+	$(BUILD)/quern plot out/shear
+	@echo "Pictures: out/demo/disk.png, out/inclined_plane/*.png, out/shear/stress.png and out/shear/plots/*.png"
+
+shear: build          ## 369 grains in shear at the published resolution, all variants: out/granular_shear
+	$(BUILD)/granular_shear_report -o out/granular_shear
 
 test: build           ## build and run all tests
 	ctest --test-dir $(BUILD) --output-on-failure -j $(JOBS)
