@@ -128,8 +128,10 @@ void ContactBodies<Dim>::make_bodies(const ContactScene<Dim>& grains) {
         }
     }
     owners_.clear();
+    first_of_.clear();
     for (const int g : grain_of_) {
         owners_.push_back(grains.grains[g]);
+        first_of_.push_back(owners_.back().first);
         owners_.back().first = 0;
     }
     for (std::size_t place = 0; place < order_.size(); ++place)

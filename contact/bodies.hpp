@@ -57,6 +57,9 @@ class ContactBodies {
     int grain_of(int body) const { return grain_of_[body]; }
     /// The grain that a body or a piece of debris is of, with `first` 0: shape, scale and material.
     const Grain<Dim>& owner(int body) const { return owners_[body]; }
+    /// Node of the owner's shape at a place, and the place of a node of the owner of a body.
+    int node_at(int place) const { return order_[place] - first_of_[body_of_[place]]; }
+    int place_of(int body, int node) const { return place_of_[first_of_[body] + node]; }
     const std::vector<LooseParticle>& debris() const { return debris_; }
     const std::vector<CrackPair>& cracks() const { return cracks_; }
     /// Particles of the pieces that are bodies, by their places.
@@ -98,7 +101,8 @@ class ContactBodies {
     std::vector<Grain<Dim>> bodies_;
     std::vector<int> grain_of_;  // [n_bodies + pieces of debris]
     std::vector<Grain<Dim>> owners_;
-    std::vector<int> body_of_;  // [n]
+    std::vector<int> first_of_;  // of owners_, in the arrays of the grains
+    std::vector<int> body_of_;   // [n]
     std::vector<LooseParticle> debris_;
     std::vector<CrackPair> cracks_;
     std::vector<int> in_pieces_;

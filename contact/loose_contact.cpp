@@ -55,7 +55,7 @@ void LooseContact<Dim>::search(const ContactBodies<Dim>& bodies, const ContactSc
     std::sort(near_.begin(), near_.end(), [](const CrackPair& a, const CrackPair& b) {
         return std::pair(a.first, a.second) < std::pair(b.first, b.second);
     });
-    if (!bodies.debris().empty()) friction_.search(bodies, scene, near_, cells_);
+    if (!bodies.debris().empty()) friction_.search(bodies, scene, near_);
     const auto add_walls = [&](int p, double range) {
         for (std::size_t w = 0; w < scene.walls.size(); ++w)
             if (scene.walls[w].distance(scene.x[p]) < range + margin)

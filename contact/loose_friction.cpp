@@ -6,8 +6,6 @@ namespace quern {
 
 namespace {
 
-constexpr double next_to = 1.5;  ///< neighbours are this near [spacings]
-
 /// Unit vectors across n.
 std::array<Vec<2>, 1> across(const Vec<2>& n) {
     return {Vec<2>(-n[1], n[0])};
@@ -20,8 +18,16 @@ std::array<Vec<3>, 2> across(const Vec<3>& n) {
 }  // namespace
 
 template <int Dim>
+const NodePatches<Dim>& LooseFriction<Dim>::patches_of(const Shape<Dim>& shape) {
+    for (const auto& [known, patches] : patches_)
+        if (known == &shape) return *patches;
+    patches_.emplace_back(&shape, std::make_unique<NodePatches<Dim>>(shape));
+    return *patches_.back().second;
+}
+
+template <int Dim>
 void LooseFriction<Dim>::search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                                std::span<const CrackPair> pairs, const PointCells<Dim>& cells) {
+                                std::span<const CrackPair> pairs) {
     patch_of_.assign(scene.x.size(), -1);
     first_.assign(1, 0);
     members_.clear();
@@ -29,12 +35,10 @@ void LooseFriction<Dim>::search(const ContactBodies<Dim>& bodies, const ContactS
     const auto list = [&](int p) {
         if (patch_of_[p] >= 0) return;
         const int body = bodies.body_of(p);
-        const Grain<Dim>& owner = bodies.owner(body);
-        const double reach = next_to * owner.shape->dx * owner.scale;
-        cells.visit_near(scene.x[p], [&](int k) {
-            if (bodies.body_of(k) == body && (scene.x[k] - scene.x[p]).squaredNorm() <= reach * reach)
-                members_.push_back(k);
-        });
+        for (const int node : patches_of(*bodies.owner(body).shape).of(bodies.node_at(p))) {
+            const int k = bodies.place_of(body, node);
+            if (bodies.body_of(k) == body) members_.push_back(k);
+        }
         std::sort(members_.begin() + first_.back(), members_.end());
         patch_of_[p] = static_cast<int>(first_.size()) - 1;
         first_.push_back(static_cast<int>(members_.size()));

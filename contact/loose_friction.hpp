@@ -1,7 +1,7 @@
 // Friction of debris: what a push along the surface does to a particle and to what stands next to it.
 //
 // Two balls that touch in c rub there, a lever l = c - x_p off their centres. J_t acts at p and its moment on
-// p and its neighbours, those of the same piece within 1.5 spacings when pairs were last searched
+// p and its neighbours, those of the same piece within 1.5 spacings in the reference shape
 // (node_patch.hpp):
 //
 //     dv_p    = J_t/m_p + (Y tau) x (x_p - xb),   dv_k = (Y tau) x (x_k - xb),   tau = l x J_t
@@ -16,21 +16,21 @@
 // Our own; momentum and moment of momentum are exact, energy falls.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "contact/bodies.hpp"
 #include "contact/node_patch.hpp"
-#include "contact/point_cells.hpp"
 
 namespace quern {
 
 template <int Dim>
 class LooseFriction {
   public:
-    /// Lists the neighbours of the particles in `pairs`; none of them if nothing rubs. `cells`: of all
-    /// particles, at least 1.5 spacings wide.
+    /// Lists the neighbours of the particles in `pairs`; none of them if nothing rubs.
     void search(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene,
-                std::span<const CrackPair> pairs, const PointCells<Dim>& cells);
+                std::span<const CrackPair> pairs);
 
     /// Whether p and q, d from p to q [m], can rub in this step. Their number, to be used until clear(); -1:
     /// no.
@@ -71,6 +71,9 @@ class LooseFriction {
     };
     Side side(const ContactBodies<Dim>& bodies, const ContactScene<Dim>& scene, int p) const;
 
+    const NodePatches<Dim>& patches_of(const Shape<Dim>& shape);
+
+    std::vector<std::pair<const Shape<Dim>*, std::unique_ptr<NodePatches<Dim>>>> patches_;
     std::vector<int> patch_of_;  // [n] -1: none
     std::vector<int> first_, members_;
     std::vector<Rub> rubs_;

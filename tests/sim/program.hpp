@@ -33,7 +33,14 @@ class Program {
   public:
     Program(const TempFolder& folder, const std::vector<std::string>& arguments, std::string out = {})
         : out_(out.empty() ? folder.write("stdout", "") : std::move(out)), err_(folder.write("stderr", "")) {
+        // A signal that comes before exec must end the child, not run the handlers of the tests in it.
+        sigset_t all, before;
+        sigfillset(&all);
+        sigprocmask(SIG_BLOCK, &all, &before);
         child_ = fork();
+        for (const int number : {SIGINT, SIGTERM})
+            if (child_ == 0) std::signal(number, SIG_DFL);
+        sigprocmask(SIG_SETMASK, &before, nullptr);
         if (child_ != 0) return;
         dup2(open(out_.c_str(), O_WRONLY), STDOUT_FILENO);
         dup2(open(err_.c_str(), O_WRONLY), STDERR_FILENO);

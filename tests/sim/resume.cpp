@@ -33,6 +33,11 @@ grains:
      velocity: [0, 0, -3]}
 )yaml";
 
+/// Grains that break under a lid.
+const std::string lid =
+    replaced(unequal_deck, "{side: x+}]",
+             "{side: x+}, {name: lid, point: [3, 5.9], normal: [0, -1], servo: {force: 9e4}}]");
+
 /// Numbers of a table in results.h5 by their bits; none if it is not there.
 std::vector<std::uint64_t> observed(const std::string& directory, const std::string& name) {
     const Hdf5Handle file(H5Fopen((directory + "/results.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
@@ -129,10 +134,21 @@ TEST_CASE("Resume: material points, in space, with moving walls") {
     check_killed({points, {"contact.coupling=impulse", "time.end=0.5"}, 1}, SIGKILL, {3, 20});
 }
 
+TEST_CASE("Resume: from each of some checkpoints, with debris that rubs") {
+    const TempFolder folder;
+    const std::string deck = folder.write("deck.yaml", lid);
+    for (const int every : {20, 30, 40, 50, 60, 70}) {
+        CAPTURE(every);
+        const std::string out = deck + std::to_string(every);
+        const std::string setting = "output.checkpoint.every=" + std::to_string(every);
+        REQUIRE(quern(folder, {"run", deck, "-o", out, "--threads", "1", "--set", setting}).code == 0);
+        const std::string hash = hash_in(out);
+        REQUIRE(quern(folder, {"run", "--resume", out, "--threads", "1"}).code == 0);
+        CHECK(hash_in(out) == hash);
+    }
+}
+
 TEST_CASE("Resume: a wall that presses as hard as asked") {
-    const std::string lid =
-        replaced(unequal_deck, "{side: x+}]",
-                 "{side: x+}, {name: lid, point: [3, 5.9], normal: [0, -1], servo: {force: 9e4}}]");
     check_killed({lid, often, 1}, SIGKILL, {0, 60});
     check_killed({lid, often, 2}, SIGKILL, {45});
 }
